@@ -28,9 +28,12 @@ ExitCode LoadedScene::exitCode() const {
 
 bool LoadedScene::changesWithFrames() const {
     if (!tree.document) return false;
-    const schema::Document& document = *tree.document;
-    return std::ranges::any_of(document.nodes, [](const auto& node) { return node.name == "at"; }) ||
-           std::ranges::any_of(document.parameters, [](const auto& p) { return p.name == kFrameParameter && p.used; });
+    return asksForFrame() || std::ranges::any_of(tree.document->nodes, [](const auto& n) { return n.name == "at"; });
+}
+
+bool LoadedScene::asksForFrame() const {
+    return tree.document && std::ranges::any_of(tree.document->parameters,
+                                                [](const auto& p) { return p.name == kFrameParameter && p.used; });
 }
 
 namespace {
@@ -98,6 +101,31 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     loaded->tree.frame = input.frame;
     loaded->resolveSeconds = watch.lap();
     return loaded;
+}
+
+// Packs, imported scenes and models consist of more files than the one that is looked at.
+bool SceneLoader::isSame(const SceneInput& input) const {
+    return last_ && last_->readable && !last_->pack && !last_->import && last_->tree.inserts.empty() &&
+           !last_->asksForFrame() && !input.fromStandardInput && input.path == input_.path &&
+           input.defines == input_.defines && input.frame.has_value() == input_.frame.has_value() &&
+           identityOf(input.path) == file_;
+}
+
+std::shared_ptr<LoadedScene> SceneLoader::load(const SceneInput& input) {
+    if (isSame(input)) {
+        last_->tree.frame = input.frame;
+        last_->diagnostics = diagnostics_;
+        *last_->tree.namedFiles = named_;
+        last_->parseSeconds = last_->resolveSeconds = 0;
+        return last_;
+    }
+    file_ = identityOf(input.path);
+    input_ = input;
+    last_ = loadScene(input);
+    diagnostics_ = last_->diagnostics;
+    named_ = last_->tree.namedFiles ? *last_->tree.namedFiles : std::vector<schema::NamedFile>();
+    ++timesRead_;
+    return last_;
 }
 
 } // namespace abbe

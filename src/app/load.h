@@ -4,6 +4,7 @@
 #include "app/imported_scene.h"
 #include "app/program_end.h"
 #include "base/diagnostic.h"
+#include "base/file.h"
 #include "base/source.h"
 #include "packs/unpacked.h"
 #include "schema/scene_tree.h"
@@ -41,6 +42,8 @@ struct LoadedScene {
     std::unique_ptr<PlacedModels> models;        // that shapes of the scene take with their materials
     FileId text = FileId::none;                  // the scene's own, of `sources`
     bool readable = false;                       // the file itself could be read
+    // Whether the text asks for the parameter `frame`, so that it means something else at each frame.
+    bool asksForFrame() const;
     double parseSeconds = 0, resolveSeconds = 0; // wall clock
 
     // How a command ends that met these diagnostics: done without errors.
@@ -53,5 +56,25 @@ struct LoadedScene {
 // (docs/importing.md), which is imported there.
 // Never null and never throws on bad input; what is wrong is in `diagnostics`.
 std::unique_ptr<LoadedScene> loadScene(const SceneInput&);
+
+// Scenes of the same text one after another, such as the frames of an animation: read again only where the file is
+// another one, or the text is another one at each frame.
+class SceneLoader {
+  public:
+    // As loadScene(). Whoever has an earlier one must be done with it: it may be the same, as it was when it was
+    // loaded.
+    std::shared_ptr<LoadedScene> load(const SceneInput&);
+    std::size_t timesRead() const { return timesRead_; }
+
+  private:
+    bool isSame(const SceneInput&) const;
+
+    std::shared_ptr<LoadedScene> last_;
+    SceneInput input_;
+    FileIdentity file_;
+    Diagnostics diagnostics_; // of loading
+    std::vector<schema::NamedFile> named_;
+    std::size_t timesRead_ = 0;
+};
 
 } // namespace abbe

@@ -21,6 +21,29 @@
 
 namespace abbe {
 
+namespace {
+
+std::int64_t nanoseconds(const timespec& t) { return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec; }
+
+} // namespace
+
+FileIdentity identityOf(const std::string& path) {
+    // Times of files come in ticks of the kernel, of up to 10 ms: what is written twice in one has one time.
+    constexpr std::int64_t kUnsure = 40'000'000; // ns
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return {};
+    FileIdentity file{static_cast<std::uint64_t>(status.st_dev),
+                      static_cast<std::uint64_t>(status.st_ino),
+                      static_cast<std::uint64_t>(status.st_size),
+                      nanoseconds(status.st_mtim),
+                      nanoseconds(status.st_ctim),
+                      0};
+    timespec now{};
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    if (std::max(file.modified, file.changed) + kUnsure > nanoseconds(now)) file.unsure = nanoseconds(now);
+    return file;
+}
+
 RegularFile::RegularFile(const std::string& path) {
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status {};

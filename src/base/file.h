@@ -39,6 +39,18 @@ class RegularFile {
     std::string why_;
 };
 
+// What tells that a file is still the same without reading it. Two that compare equal were not written in between.
+struct FileIdentity {
+    std::uint64_t device = 0, number = 0, size = 0; // all 0 where there is none
+    std::int64_t modified = 0, changed = 0;         // ns
+    // ns, when it was looked at, if that was so soon after a change that another one might not show in its times: it
+    // then equals no other.
+    std::int64_t unsure = 0;
+
+    bool operator==(const FileIdentity&) const = default;
+};
+FileIdentity identityOf(const std::string& path);
+
 // Empty, or why a library that opens files itself is not to be given this one.
 inline std::string whyNotRegular(const std::string& path) { return RegularFile(path).why(); }
 

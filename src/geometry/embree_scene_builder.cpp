@@ -41,8 +41,9 @@ struct EmbreeSceneBuilder::Impl {
     ShapeUse useOf(const std::pair<const Shape*, Binding>&) const;
     std::vector<ShapeUse> usesOf(const Shapes&) const;
     std::shared_ptr<ShapeTree> plant(const std::shared_ptr<const EmbreeDevice>&, const Shapes&) const;
-    std::shared_ptr<const ShapeTree> leafOf(const EmbreeStructure* last, std::size_t object) const;
-    void fill(EmbreeStructure&, KeptGeometry&);
+    using Trees = std::vector<std::shared_ptr<const ShapeTree>>;
+    std::shared_ptr<const ShapeTree> leafOf(const Trees& last, std::size_t object) const;
+    void fill(EmbreeStructure&, KeptGeometry&, const Trees& last);
     void addTables(EmbreeStructure&, std::uint32_t inside, RTCScene, BuiltObject&);
     void addTable(EmbreeStructure&, const Inside&, RTCScene, BuiltObject&, std::unique_ptr<const InstanceTable>);
     bool isSame(const EmbreeStructure&) const;
@@ -97,18 +98,17 @@ std::shared_ptr<ShapeTree> EmbreeSceneBuilder::Impl::plant(const std::shared_ptr
 }
 
 // One of the last building over the same shapes, or null.
-std::shared_ptr<const ShapeTree> EmbreeSceneBuilder::Impl::leafOf(const EmbreeStructure* last,
-                                                                  std::size_t object) const {
+std::shared_ptr<const ShapeTree> EmbreeSceneBuilder::Impl::leafOf(const Trees& last, std::size_t object) const {
     const Shapes& all = objects[object];
-    if (!last || all.empty()) return nullptr;
+    if (all.empty()) return nullptr;
     const ShapeUse first = useOf(all.front());
     const auto matches = [&](const auto& tree) {
         return tree->leaf && tree->uses.size() == all.size() && tree->uses.front() == first &&
                tree->uses == usesOf(all);
     };
-    if (object < last->objects.size() && matches(last->objects[object])) return last->objects[object];
-    const auto found = std::ranges::find_if(last->objects, matches);
-    return found == last->objects.end() ? nullptr : *found;
+    if (object < last.size() && matches(last[object])) return last[object];
+    const auto found = std::ranges::find_if(last, matches);
+    return found == last.end() ? nullptr : *found;
 }
 
 // Adds what is placed inside, with geometry ids behind those of shapes, which no record needs: hits name what they hit
@@ -187,8 +187,8 @@ void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, s
     impl_->moving[{inside, object, visible.bits()}].push_back(motion);
 }
 
-void EmbreeSceneBuilder::Impl::fill(EmbreeStructure& s, KeptGeometry& kept) {
-    const auto device = kept.last ? kept.last->top->device : std::make_shared<const EmbreeDevice>();
+void EmbreeSceneBuilder::Impl::fill(EmbreeStructure& s, KeptGeometry& kept, const Trees& last) {
+    const auto device = last.empty() ? std::make_shared<const EmbreeDevice>() : last.back()->device;
     const auto boundsOf = [](const Shapes& all) {
         Bounds3 box;
         for (const auto& [shape, binding] : all)
@@ -200,7 +200,7 @@ void EmbreeSceneBuilder::Impl::fill(EmbreeStructure& s, KeptGeometry& kept) {
     s.top = scene;
     std::size_t records = scene->slots.size();
     for (std::uint32_t i = 0; i < objects.size(); ++i) {
-        BuiltObject object{isLeaf(i) ? leafOf(kept.last.get(), i) : nullptr, records, boundsOf(objects[i]), 0};
+        BuiltObject object{isLeaf(i) ? leafOf(last, i) : nullptr, records, boundsOf(objects[i]), 0};
         if (object.tree) {
             ++kept.kept;
         } else {
@@ -290,14 +290,23 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build(KeptGeometry& kept,
         kept.kept = 1 + structure->objects.size();
     } else {
         for (const auto& owner : owners) impl_->owners.emplace(owner.get(), owner);
+        Impl::Trees last; // of objects, and behind them any, for its device
+        if (structure) {
+            last = structure->objects;
+            const auto none = std::make_shared<ShapeTree>();
+            none->device = structure->top->device;
+            last.push_back(none);
+            // Before another one takes its memory, if nothing renders with it any more.
+            structure.reset();
+            kept.last.reset();
+        }
         auto made = std::make_unique<EmbreeStructure>();
         try {
-            impl_->fill(*made, kept);
+            impl_->fill(*made, kept, last);
         } catch (...) {
             // Embree 3 ends the process when it releases a scene whose threads did not get their memory: that one
             // stays. Its device has reported the fault for good.
             (void)made.release();
-            kept.last.reset();
             throw;
         }
         structure = std::move(made);

@@ -80,7 +80,7 @@ DaylightSky::DaylightSky(const Frame& axes, double sunElevation, const AirParams
                          bool sunOnGround)
     : axes_(axes), sky_(air, sunElevation, SkyBands::mean([&](double nm) { return groundAlbedo.at(nm); })),
       source_(sourceCurve(sunElevation)),
-      sunlight_(std::make_unique<SampledCurve>(solarIrradiance(kPiD / 2 - sunElevation, air))),
+      sunlight_(std::make_shared<SampledCurve>(solarIrradiance(kPiD / 2 - sunElevation, air))),
       totals_(totals(groundAlbedo, sunOnGround ? std::max(std::sin(sunElevation), 0.0) : 0)), distribution_(tabulate()),
       groundShare_(luminousIntegral(*totals_.ground) * kSkyColumns * kSkyRows / 2 / distribution_.total()),
       radiant_(radiantIntegral(*totals_.fluence)), visibleFluence_(visibleIntegral(*totals_.fluence)) {
@@ -98,11 +98,11 @@ DaylightSky::Totals DaylightSky::totals(const Curve& groundAlbedo, double sunHei
             horizontal = fma(value, static_cast<float>(rowHeight(row + 0.5)), horizontal);
         }
     Totals result;
-    result.ground = std::make_unique<SampledCurve>([&](double nm) {
+    result.ground = std::make_shared<SampledCurve>([&](double nm) {
         const double sky = source_.at(nm) * horizontal.at(nm), sun = sunlight_->at(nm) * sunHeight;
         return groundAlbedo.at(nm) * (sky + sun) / kPiD;
     });
-    result.fluence = std::make_unique<SampledCurve>(
+    result.fluence = std::make_shared<SampledCurve>(
         [&](double nm) { return source_.at(nm) * scalar.at(nm) + 2 * kPiD * result.ground->at(nm); });
     return result;
 }
@@ -198,9 +198,16 @@ std::vector<std::unique_ptr<DistantLight>> makeDaylight(const DaylightParams& pa
     }
     const Vec3d zenith = normalize(toRender.vector(up)), sun = normalize(toRender.vector(*place));
     const ConstantCurve albedo(kGroundAlbedo);
-    auto sky = std::make_unique<DaylightSky>(Frame::fromNormalTangent(Vec3(zenith), Vec3(sun)), elevation,
-                                             AirParams{params.turbidity, params.ozone},
-                                             params.groundAlbedo ? *params.groundAlbedo : albedo, params.sun);
+    const Curve& ground = params.groundAlbedo ? *params.groundAlbedo : albedo;
+    DigestWriter key("daylight");
+    key.add(zenith), key.add(sun);
+    for (const double v : {elevation, params.turbidity, params.ozone}) key.number(v);
+    key.number(params.sun);
+    addCurve(key, ground);
+    auto sky = std::make_unique<DaylightSky>(*KeptTables::get<DaylightSky>(context.kept, key.digest(), [&] {
+        return std::make_shared<const DaylightSky>(Frame::fromNormalTangent(Vec3(zenith), Vec3(sun)), elevation,
+                                                   AirParams{params.turbidity, params.ozone}, ground, params.sun);
+    }));
     std::unique_ptr<SunLight> disk;
     if (params.sun && elevation > 0)
         disk = std::make_unique<SunLight>(sun, kSunHalfAngle, ScaledCurve{&sky->sunlight(), 1});
@@ -210,7 +217,8 @@ std::vector<std::unique_ptr<DistantLight>> makeDaylight(const DaylightParams& pa
     if (windows->empty() || !context.besideScattering) {
         lights.push_back(std::move(sky));
     } else {
-        auto room = std::make_unique<WindowLight>(std::move(sky), *windows);
+        Portals portals = portalsFor(*sky, *windows, context, key.digest());
+        auto room = std::make_unique<WindowLight>(std::move(sky), std::move(portals));
         if (disk) disk->lookThrough(room->portals());
         lights.push_back(std::move(room));
     }

@@ -49,8 +49,8 @@ class DaylightSky final : public DistantLight {
 
   private:
     struct Totals {
-        std::unique_ptr<const Curve> ground;  // radiance of the ground
-        std::unique_ptr<const Curve> fluence; // ∫ L dω over all directions, W·m⁻²·nm⁻¹
+        std::shared_ptr<const Curve> ground;  // radiance of the ground
+        std::shared_ptr<const Curve> fluence; // ∫ L dω over all directions, W·m⁻²·nm⁻¹
     };
     Totals totals(const Curve& groundAlbedo, double sunHeight) const;
     Distribution2D tabulate() const;
@@ -61,7 +61,7 @@ class DaylightSky final : public DistantLight {
     Frame axes_;
     ClearSky sky_;
     SampledCurve source_; // what values of sky_ are times of
-    std::unique_ptr<const Curve> sunlight_;
+    std::shared_ptr<const Curve> sunlight_;
     Totals totals_;
     Distribution2D distribution_; // cells of equal solid angle: columns turn about the zenith, rows are even in height
     double groundShare_;          // of its probability: the rows below the horizon

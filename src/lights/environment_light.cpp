@@ -82,36 +82,45 @@ schema::TypeInfo environmentLightType() {
     return type;
 }
 
-EnvironmentLight::EnvironmentLight(EnvironmentImage image, std::unique_ptr<const RgbRadiance> upsampling, double scale,
-                                   const Transform& toRender, bool compensated)
-    : image_(std::move(image)), upsampling_(std::move(upsampling)), scale_(static_cast<float>(scale)),
-      axes_(imageAxes(toRender)), rowCosine_(rowCosines(image_.height)), channelWeights_(channelWeights(*upsampling_)),
-      distribution_(density(compensated)), fluence_(0), power_(0) {
+EnvironmentTables::EnvironmentTables(EnvironmentImage texels, std::unique_ptr<const RgbRadiance> radiance,
+                                     bool compensated)
+    : image(std::move(texels)), upsampling(std::move(radiance)), rowCosine(rowCosines(image.height)),
+      channelWeights_(channelWeights(*upsampling)), distribution(density(compensated)) {
     const Vec3d total = integratedRadiance();
     if (const double most = maxComponent(total); most > 0) {
-        powerShape_ = std::make_unique<SampledCurve>(emittedCurve(*upsampling_, Vec3(total / most)));
-        fluence_ = most * radiantIntegral(*powerShape_) * scale;
+        powerShape = std::make_unique<SampledCurve>(emittedCurve(*upsampling, Vec3(total / most)));
+        fluence = most * radiantIntegral(*powerShape);
     }
+}
+
+EnvironmentLight::EnvironmentLight(EnvironmentImage image, std::unique_ptr<const RgbRadiance> upsampling, double scale,
+                                   const Transform& toRender, bool compensated)
+    : EnvironmentLight(std::make_shared<const EnvironmentTables>(std::move(image), std::move(upsampling), compensated),
+                       scale, toRender) {}
+
+EnvironmentLight::EnvironmentLight(std::shared_ptr<const EnvironmentTables> tables, double scale,
+                                   const Transform& toRender)
+    : tables_(std::move(tables)), scale_(static_cast<float>(scale)), axes_(imageAxes(toRender)),
+      fluence_(tables_->fluence * scale), power_(0) {
     commit(Bounds3{});
 }
 
 void EnvironmentLight::commit(const Bounds3& bounds) { power_ = fluence_ * sceneDiskArea(bounds); }
 
-Vec3 EnvironmentLight::texel(int column, int row) const noexcept {
-    const int wrapped = column < 0 ? column + image_.width : column >= image_.width ? column - image_.width : column;
-    const int clamped = std::clamp(row, 0, image_.height - 1);
-    const float* p =
-        image_.rgb.data() + 3 * (static_cast<std::size_t>(clamped) * static_cast<std::size_t>(image_.width) +
-                                 static_cast<std::size_t>(wrapped));
+Vec3 EnvironmentTables::texel(int column, int row) const noexcept {
+    const int wrapped = column < 0 ? column + image.width : column >= image.width ? column - image.width : column;
+    const int clamped = std::clamp(row, 0, image.height - 1);
+    const float* p = image.rgb.data() + 3 * (static_cast<std::size_t>(clamped) * static_cast<std::size_t>(image.width) +
+                                             static_cast<std::size_t>(wrapped));
     return {p[0], p[1], p[2]};
 }
 
-double EnvironmentLight::cellSolidAngle(int row) const noexcept {
+double EnvironmentTables::cellSolidAngle(int row) const noexcept {
     const auto r = static_cast<std::size_t>(row);
-    return 2 * kPiD / image_.width * (rowCosine_[r] - rowCosine_[r + 1]);
+    return 2 * kPiD / image.width * (rowCosine[r] - rowCosine[r + 1]);
 }
 
-Vec3d EnvironmentLight::cellMean(int column, int row) const noexcept {
+Vec3d EnvironmentTables::cellMean(int column, int row) const noexcept {
     // The mean of bilinear interpolation over a cell takes 6/8 of its own texel and 1/8 of each neighbour, per axis.
     // (That sin θ varies over the cell is left out: this is for densities only.)
     constexpr double kShare[3] = {0.125, 0.75, 0.125};
@@ -122,19 +131,19 @@ Vec3d EnvironmentLight::cellMean(int column, int row) const noexcept {
     return mean;
 }
 
-Distribution2D EnvironmentLight::density(bool compensated) {
+Distribution2D EnvironmentTables::density(bool compensated) {
     std::vector<double> luminance;
-    luminance.reserve(image_.rgb.size() / 3);
+    luminance.reserve(image.rgb.size() / 3);
     double total = 0;
-    for (int row = 0; row < image_.height; ++row)
-        for (int column = 0; column < image_.width; ++column) {
+    for (int row = 0; row < image.height; ++row)
+        for (int column = 0; column < image.width; ++column) {
             luminance.push_back(dot(cellMean(column, row), channelWeights_));
             total += luminance.back() * cellSolidAngle(row);
         }
     const auto weights = [&](double threshold) {
         std::vector<double> result(luminance.size());
         for (std::size_t i = 0; i < result.size(); ++i) {
-            const int row = static_cast<int>(i / static_cast<std::size_t>(image_.width));
+            const int row = static_cast<int>(i / static_cast<std::size_t>(image.width));
             result[i] = std::max(0.0, luminance[i] - threshold) * cellSolidAngle(row);
         }
         return result;
@@ -143,19 +152,19 @@ Distribution2D EnvironmentLight::density(bool compensated) {
     // An even image has no excess but rounding: it keeps its plain density.
     const std::vector<double> excess = weights(total / (4 * kPiD));
     const double sum = std::accumulate(excess.begin(), excess.end(), 0.0);
-    even_ = sum <= 1e-6 * total;
-    if (compensated && !even_) {
-        dimShare_ = 1 - sum / total;
-        return {excess, static_cast<std::size_t>(image_.width)};
+    even = sum <= 1e-6 * total;
+    if (compensated && !even) {
+        dimShare = 1 - sum / total;
+        return {excess, static_cast<std::size_t>(image.width)};
     }
-    return {weights(0), static_cast<std::size_t>(image_.width)};
+    return {weights(0), static_cast<std::size_t>(image.width)};
 }
 
-Vec3d EnvironmentLight::integratedRadiance() const {
+Vec3d EnvironmentTables::integratedRadiance() const {
     Vec3d total;
-    for (int row = 0; row < image_.height; ++row) {
+    for (int row = 0; row < image.height; ++row) {
         Vec3d rowSum;
-        for (int column = 0; column < image_.width; ++column) rowSum += cellMean(column, row);
+        for (int column = 0; column < image.width; ++column) rowSum += cellMean(column, row);
         total += rowSum * cellSolidAngle(row);
     }
     return total;
@@ -164,7 +173,7 @@ Vec3d EnvironmentLight::integratedRadiance() const {
 Vec2 EnvironmentLight::imagePoint(Vec3 local) const noexcept {
     const float u = 0.5f + std::atan2(local.x, -local.z) * (0.5f * kInvPi);
     const float v = std::atan2(std::sqrt(local.x * local.x + local.z * local.z), local.y) * kInvPi;
-    return {u * static_cast<float>(image_.width), v * static_cast<float>(image_.height)};
+    return {u * static_cast<float>(tables_->image.width), v * static_cast<float>(tables_->image.height)};
 }
 
 Vec3 EnvironmentLight::lookup(Vec2 point) const noexcept {
@@ -173,8 +182,8 @@ Vec3 EnvironmentLight::lookup(Vec2 point) const noexcept {
     const float fx = x - x0, fy = y - y0;
     const int column = static_cast<int>(x0), row = static_cast<int>(y0);
     const auto mix = [](Vec3 a, Vec3 b, float t) { return a + (b - a) * t; };
-    const Vec3 upper = mix(texel(column, row), texel(column + 1, row), fx);
-    const Vec3 lower = mix(texel(column, row + 1), texel(column + 1, row + 1), fx);
+    const Vec3 upper = mix(tables_->texel(column, row), tables_->texel(column + 1, row), fx);
+    const Vec3 lower = mix(tables_->texel(column, row + 1), tables_->texel(column + 1, row + 1), fx);
     return mix(upper, lower, fy);
 }
 
@@ -184,22 +193,24 @@ std::optional<LightSample> EnvironmentLight::sample(const Receiver&, std::uint32
 }
 
 LightSample EnvironmentLight::sampleImage(Vec2 u, const Wavelengths& lambda) const noexcept {
-    const CellSample cell = distribution_.sample(u);
+    const CellSample cell = tables_->distribution.sample(u);
     // Uniform in the cosine within the cell, so that its density is constant even at the poles.
-    const double cosTheta = lerp(rowCosine_[cell.row], rowCosine_[cell.row + 1], static_cast<double>(cell.offset.y));
+    const double cosTheta =
+        lerp(tables_->rowCosine[cell.row], tables_->rowCosine[cell.row + 1], static_cast<double>(cell.offset.y));
     const float sinTheta = static_cast<float>(safeSqrt((1 - cosTheta) * (1 + cosTheta)));
-    const float turn = (static_cast<float>(cell.column) + cell.offset.x) / static_cast<float>(image_.width) - 0.5f;
+    const float turn =
+        (static_cast<float>(cell.column) + cell.offset.x) / static_cast<float>(tables_->image.width) - 0.5f;
     const float phi = 2 * kPi * turn;
     const Vec3 local{sinTheta * std::sin(phi), static_cast<float>(cosTheta), -sinTheta * std::cos(phi)};
     const Vec3 wi = normalize(axes_.toWorld(local));
-    const double pdf = cell.probability / cellSolidAngle(static_cast<int>(cell.row));
+    const double pdf = cell.probability / tables_->cellSolidAngle(static_cast<int>(cell.row));
     return {wi, Vec3{}, kInfinity, escaped(wi, lambda, 0), static_cast<float>(pdf)};
 }
 
 // Radiance is at most the excess over its mean, which distribution_ follows, and that mean: so this mixture follows the
 // light to within the smaller share, and all of it.
 std::optional<LightSample> EnvironmentLight::sampleDistant(Vec2 u, const Wavelengths& lambda, float) const noexcept {
-    const float dim = static_cast<float>(dimShare_);
+    const float dim = static_cast<float>(tables_->dimShare);
     const bool even = u.x < dim;
     u.x = std::min(even ? u.x / dim : (u.x - dim) / (1 - dim), kOneMinusEpsilon);
     const Vec3 w = even ? squareToSphere(u) : sampleImage(u, lambda).wi;
@@ -207,25 +218,23 @@ std::optional<LightSample> EnvironmentLight::sampleDistant(Vec2 u, const Wavelen
 }
 
 float EnvironmentLight::pdfDistant(Vec3 w, float) const noexcept {
-    const float dim = static_cast<float>(dimShare_);
+    const float dim = static_cast<float>(tables_->dimShare);
     return dim * kSpherePdf + (1 - dim) * pdfImage(w);
 }
 
 Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexcept {
-    return upsampling_->at(lookup(imagePoint(axes_.toLocal(w))), lambda) * scale_;
+    return tables_->upsampling->at(lookup(imagePoint(axes_.toLocal(w))), lambda) * scale_;
 }
 
 float EnvironmentLight::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept { return pdfImage(w); }
 
 float EnvironmentLight::pdfImage(Vec3 w) const noexcept {
     const Vec2 point = imagePoint(axes_.toLocal(w));
-    const int column = std::clamp(static_cast<int>(point.x), 0, image_.width - 1);
-    const int row = std::clamp(static_cast<int>(point.y), 0, image_.height - 1);
-    const double p = distribution_.probability(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
-    return static_cast<float>(p / cellSolidAngle(row));
+    const int column = std::clamp(static_cast<int>(point.x), 0, tables_->image.width - 1);
+    const int row = std::clamp(static_cast<int>(point.y), 0, tables_->image.height - 1);
+    const double p = tables_->distribution.probability(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+    return static_cast<float>(p / tables_->cellSolidAngle(row));
 }
-
-namespace {
 
 // Of the brightest pixel: dark ones may be as dark as they like. A triple of 1 has a radiance of about 1.
 bool checkBrightestPixel(const EnvironmentImage& image, double scale, Span span, Diagnostics& diagnostics) {
@@ -242,8 +251,6 @@ bool checkBrightestPixel(const EnvironmentImage& image, double scale, Span span,
     d.help = "`exposure` brightens or darkens the image; a single odd pixel is mended in the program that wrote it";
     return false;
 }
-
-} // namespace
 
 bool checkEnvironmentImage(EnvironmentImage& image, double scale, Span span, Diagnostics& diagnostics) {
     const std::size_t count =
@@ -271,21 +278,33 @@ bool checkEnvironmentImage(EnvironmentImage& image, double scale, Span span, Dia
     return checkBrightestPixel(image, scale, span, diagnostics);
 }
 
-std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
-                                                   std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
-                                                   const LightContext& context, Diagnostics& diagnostics) {
+double environmentScale(const EnvironmentLightParams& params) {
     const double luminance = params.luminance ? params.luminance->value : kUnitLuminance;
-    const double scale = luminance / kUnitLuminance * std::exp2(params.exposure);
-    if (!checkEnvironmentImage(image, scale, context.span, diagnostics)) return nullptr;
+    return luminance / kUnitLuminance * std::exp2(params.exposure);
+}
+
+std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams& params,
+                                                   std::shared_ptr<const EnvironmentTables> tables, const Digest& image,
+                                                   const LightContext& context, Diagnostics& diagnostics) {
     const Transform upright = context.zUp ? Transform::rotate({1, 0, 0}, kPiD / 2) : Transform{};
     const Transform toRender = upright.then(params.transform.at(context.time)).then(context.toRender);
     if (!toRender.uniformScale()) {
         diagnostics.error("E0348", context.span, "an environment can be turned, but not stretched");
         return nullptr;
     }
-    return throughWindows(
-        std::make_unique<EnvironmentLight>(std::move(image), std::move(upsampling), scale, toRender, compensated),
-        params, context, diagnostics);
+    DigestWriter key("environment");
+    key.add(image), key.add(toRender);
+    key.number(environmentScale(params));
+    return throughWindows(std::make_unique<EnvironmentLight>(std::move(tables), environmentScale(params), toRender),
+                          params, context, key.digest(), diagnostics);
+}
+
+std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
+                                                   std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
+                                                   const LightContext& context, Diagnostics& diagnostics) {
+    if (!checkEnvironmentImage(image, environmentScale(params), context.span, diagnostics)) return nullptr;
+    auto tables = std::make_shared<const EnvironmentTables>(std::move(image), std::move(upsampling), compensated);
+    return makeEnvironmentLight(params, std::move(tables), {}, context, diagnostics);
 }
 
 } // namespace abbe

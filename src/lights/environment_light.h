@@ -4,6 +4,7 @@
 #include "lights/amount.h"
 #include "lights/light_context.h"
 #include "lights/window_light.h"
+#include "math/digest.h"
 #include "math/distribution.h"
 #include "math/frame.h"
 #include "render/light.h"
@@ -39,6 +40,35 @@ struct EnvironmentLightParams : VisibleParams, PortalParams {
 
 schema::TypeInfo environmentLightType();
 
+// An image with all that sampling it takes, wherever it is turned and however bright it is. Immutable.
+class EnvironmentTables {
+  public:
+    // `compensated` as EnvironmentLight has it. Requires a checked image.
+    EnvironmentTables(EnvironmentImage, std::unique_ptr<const RgbRadiance>, bool compensated);
+
+    const EnvironmentImage image;
+    const std::unique_ptr<const RgbRadiance> upsampling;
+    const std::vector<double> rowCosine; // cos θ at the upper edge of each row, and at the lower edge of the last
+
+  private:
+    const Vec3d channelWeights_; // of the sampling density
+
+  public:
+    double dimShare = 0; // of all light: what compensation took off
+    bool even = false;   // nothing stands out from the mean
+    const Distribution2D distribution;
+    std::unique_ptr<const Curve> powerShape; // null where all is black
+    double fluence = 0;                      // ∫∫ L dω dλ for a scale of 1, W/m²
+
+    Vec3 texel(int column, int row) const noexcept;
+    double cellSolidAngle(int row) const noexcept;
+
+  private:
+    Distribution2D density(bool compensated); // sets dimShare and even
+    Vec3d cellMean(int column, int row) const noexcept;
+    Vec3d integratedRadiance() const; // ∫ rgb dω for a scale of 1
+};
+
 // Radiance is interpolated bilinearly between the centres of the texels, in RGB, and upsampled after.
 class EnvironmentLight final : public DistantLight {
   public:
@@ -47,13 +77,14 @@ class EnvironmentLight final : public DistantLight {
     // into render space; its matrix is orthogonal. Requires: a checked image, scale >= 0.
     EnvironmentLight(EnvironmentImage, std::unique_ptr<const RgbRadiance>, double scale, const Transform& toRender,
                      bool compensated);
+    EnvironmentLight(std::shared_ptr<const EnvironmentTables>, double scale, const Transform& toRender);
 
     void commit(const Bounds3&) override;
     // No power: all texels are black, and the light must be left out. The irradiance is between that of an even sky, a
     // quarter, and that of a sun, all of it; daylight's share of visible light.
     LightOutput output() const override {
         constexpr double share = LightOutput::kDaylightShare;
-        return {power_, share * power_, share * 0.5 * fluence_, powerShape_.get(), even_};
+        return {power_, share * power_, share * 0.5 * fluence_, tables_->powerShape.get(), tables_->even};
     }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
@@ -67,24 +98,12 @@ class EnvironmentLight final : public DistantLight {
     float pdfImage(Vec3 w) const noexcept;
     LightSample sampleImage(Vec2 u, const Wavelengths&) const noexcept;
     Vec2 imagePoint(Vec3 local) const noexcept;
-    Vec3 texel(int column, int row) const noexcept;
     Vec3 lookup(Vec2 point) const noexcept;
-    Distribution2D density(bool compensated); // sets dimShare_ and even_
-    double cellSolidAngle(int row) const noexcept;
-    Vec3d cellMean(int column, int row) const noexcept;
-    Vec3d integratedRadiance() const; // ∫ rgb dω for a scale of 1
 
-    EnvironmentImage image_;
-    std::unique_ptr<const RgbRadiance> upsampling_;
+    std::shared_ptr<const EnvironmentTables> tables_;
     float scale_;
-    Frame axes_;                    // x, y, z of the image's axes in render space (left-handed when mirrored)
-    std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
-    Vec3d channelWeights_;          // of the sampling density
-    double dimShare_ = 0;           // of all light: what compensation took off
-    bool even_ = false;             // nothing stands out from the mean
-    Distribution2D distribution_;
-    std::unique_ptr<const Curve> powerShape_; // null where all is black
-    double fluence_;                          // ∫∫ L dω dλ, W/m²
+    Frame axes_;     // x, y, z of the image's axes in render space (left-handed when mirrored)
+    double fluence_; // ∫∫ L dω dλ, W/m²
     double power_;
 };
 
@@ -92,6 +111,15 @@ class EnvironmentLight final : public DistantLight {
 // kSkyRadiance when they are multiplied by `scale`; counts negative ones, which are set to zero with a warning. False
 // after an error.
 bool checkEnvironmentImage(EnvironmentImage&, double scale, Span, Diagnostics&);
+
+// How many times brighter than the image a light is.
+double environmentScale(const EnvironmentLightParams&);
+// Of an image that was checked for a scale; `image` stands for the tables. Null after an error.
+std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams&,
+                                                   std::shared_ptr<const EnvironmentTables>, const Digest& image,
+                                                   const LightContext&, Diagnostics&);
+// The last of these checks alone, of an image that passed the others.
+bool checkBrightestPixel(const EnvironmentImage&, double scale, Span, Diagnostics&);
 
 // Null after an error.
 std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams&, EnvironmentImage,

@@ -4,6 +4,7 @@
 #include "base/source.h"
 #include "math/bounds.h"
 #include "math/motion.h"
+#include "render/kept_tables.h"
 #include "render/light.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
@@ -59,8 +60,14 @@ struct LightContext {
     const Texture* texture = nullptr;
     const Curve* textureWhite = nullptr; // radiance where the texture is 1, if that is all the scene says of it
     Transform toOwn = {};                // from render space to that of the light, before its transform
+    KeptTables* kept = nullptr;          // null: none are kept
     bool texturesOpen = true;            // false: the scene is only checked, and nothing can be looked up
 };
+
+// A curve by its values, from one nanometre to the next over all that is rendered.
+inline void addCurve(DigestWriter& writer, const Curve& curve) {
+    for (double nm = 360; nm <= 830; ++nm) writer.number(curve.at(nm));
+}
 
 // The cross-section that the finite geometry offers to light from far away. m². Scenes without finite geometry (planes
 // alone) get that of a sphere of 1 m, so that no distant light counts for nothing.

@@ -57,7 +57,7 @@ std::unique_ptr<DistantLight> makeSkyLight(const SkyLightParams& params, const L
     const auto radiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = kPiD, .range = kSkyRadiance},
                                            context.span, diagnostics);
     if (!radiance) return nullptr;
-    return throughWindows(std::make_unique<SkyLight>(*radiance), params, context, diagnostics);
+    return throughWindows(std::make_unique<SkyLight>(*radiance), params, context, {}, diagnostics);
 }
 
 } // namespace abbe

@@ -139,12 +139,26 @@ std::optional<std::vector<std::array<Vec3d, 4>>> portalCorners(const PortalParam
     return result;
 }
 
+Portals portalsFor(const DistantLight& light, const std::vector<std::array<Vec3d, 4>>& corners,
+                   const LightContext& context, const Digest& radiance) {
+    DigestWriter key("portals");
+    key.add(radiance);
+    for (const auto& four : corners)
+        for (const Vec3d corner : four) key.add(corner);
+    KeptTables* const kept = radiance == Digest{} ? nullptr : context.kept;
+    return *KeptTables::get<Portals>(kept, key.digest(), [&] {
+        return std::make_shared<const Portals>(corners, Brightness(light));
+    }); // whose tables are shared
+}
+
 std::unique_ptr<DistantLight> throughWindows(std::unique_ptr<DistantLight> light, const PortalParams& params,
-                                             const LightContext& context, Diagnostics& diagnostics) {
+                                             const LightContext& context, const Digest& radiance,
+                                             Diagnostics& diagnostics) {
     const auto corners = portalCorners(params, context, diagnostics);
     if (!corners) return nullptr;
     if (!light || corners->empty() || !context.besideScattering) return light;
-    return std::make_unique<WindowLight>(std::move(light), *corners);
+    Portals portals = portalsFor(*light, *corners, context, radiance);
+    return std::make_unique<WindowLight>(std::move(light), std::move(portals));
 }
 
 } // namespace abbe

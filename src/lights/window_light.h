@@ -83,6 +83,8 @@ class WindowLight final : public DistantLight {
     // Requires: a light with an extent.
     WindowLight(std::unique_ptr<DistantLight> light, const std::vector<std::array<Vec3d, 4>>& corners,
                 const std::optional<Room>& room = {});
+    WindowLight(std::unique_ptr<DistantLight> light, Portals portals)
+        : light_(std::move(light)), portals_(std::move(portals)) {}
 
     const Portals& portals() const { return portals_; }
 
@@ -114,9 +116,13 @@ class WindowLight final : public DistantLight {
 // Corners of all windows of a light, in render space; nothing after an error.
 std::optional<std::vector<std::array<Vec3d, 4>>> portalCorners(const PortalParams&, const LightContext&, Diagnostics&);
 
+// The windows with these corners for a light, whose radiance in all directions `radiance` stands for; {} for nothing.
+Portals portalsFor(const DistantLight&, const std::vector<std::array<Vec3d, 4>>& corners, const LightContext&,
+                   const Digest& radiance);
+
 // The light as it enters through its windows, if there are any and samples may leave out what scattering finds. Null
 // stays null, or comes after an error.
 std::unique_ptr<DistantLight> throughWindows(std::unique_ptr<DistantLight>, const PortalParams&, const LightContext&,
-                                             Diagnostics&);
+                                             const Digest& radiance, Diagnostics&);
 
 } // namespace abbe

@@ -160,7 +160,7 @@ template <typename T> const T* pointer(const std::optional<T>& o) { return o ? &
 } // namespace
 
 GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const Transform& worldToRender,
-                       GridExtras extras)
+                       GridExtras extras, KeptTables* kept, const Digest& grids)
     : OpticalMedium(std::move(optics)), density_(std::move(grid), worldToRender), factor_(static_cast<float>(factor)) {
     if (extras.color)
         color_ =
@@ -171,7 +171,13 @@ GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const
     }
     thickest_ = factor_ * static_cast<float>(extinction().maximum());
     const int halvings = motion_ ? 0 : halvingsFor(density_, thickest_); // bounds dilated by many bricks take long
-    bricks_ = BrickBounds::build(density_.grid(), static_cast<float>(drift()), halvings);
+    DigestWriter key("bricks");
+    key.add(grids);
+    key.number(drift()), key.number(halvings);
+    bricks_ = KeptTables::get<BrickBounds>(kept, key.digest(), [&] {
+        return std::make_shared<const BrickBounds>(
+            BrickBounds::build(density_.grid(), static_cast<float>(drift()), halvings));
+    });
     perVoxel_ = 1 << halvings;
     if (extras.flame) flame_.emplace(std::move(extras.flame->grid), worldToRender);
     if (extras.temperature) temperature_.emplace(std::move(extras.temperature->grid), worldToRender);
@@ -203,7 +209,7 @@ void GridMedium::makeEmission(const Glow& glow, const GridExtras& extras) {
 }
 
 MediumWalk* GridMedium::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
-    const GridParts parts{density_,         bricks_,  perVoxel_, pointer(color_),
+    const GridParts parts{density_,         *bricks_, perVoxel_, pointer(color_),
                           pointer(motion_), albedo(), factor_,   thickest_};
     return space.make<GridWalk>(parts, ray, tMax);
 }

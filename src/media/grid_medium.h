@@ -5,6 +5,7 @@
 #include "media/glow.h"
 #include "media/grid_emission.h"
 #include "media/medium_optics.h"
+#include "render/kept_tables.h"
 
 namespace abbe {
 
@@ -44,7 +45,9 @@ class GridMedium final : public OpticalMedium {
   public:
     // `worldToRender` places the grids' own world. Requires an invertible transform, factor >= 0, and a temperature
     // if the glow is thermal.
-    GridMedium(MediumOptics, VoxelGrid, double factor, const Transform& worldToRender, GridExtras extras = {});
+    // `grids` stands for density and velocity where their bounds are kept.
+    GridMedium(MediumOptics, VoxelGrid, double factor, const Transform& worldToRender, GridExtras extras = {},
+               KeptTables* kept = nullptr, const Digest& grids = {});
     GridMedium(const GridMedium&) = delete;
     GridMedium& operator=(const GridMedium&) = delete;
 
@@ -64,8 +67,8 @@ class GridMedium final : public OpticalMedium {
     std::optional<GridColor> color_;
     std::optional<GridMotion> motion_; // only if something moves
     std::optional<GridField<float>> flame_, temperature_;
-    BrickBounds bricks_;  // wherever things are while the shutter is open
-    double perVoxel_ = 1; // units of their space
+    std::shared_ptr<const BrickBounds> bricks_; // wherever things are while the shutter is open
+    double perVoxel_ = 1;                       // units of their space
     Bounds3 bounds_;
     float factor_, thickest_; // `thickest_`: greatest extinction at density 1 of the grid, 1/m
     std::unique_ptr<const GridEmission> emission_;

@@ -47,6 +47,12 @@ std::pair<float, float> thinningOver(const NoiseBox& box, const Bounds3d& region
             nearFaces(box, clamped(middle, region)) * withHeight(box, region.lower[box.up])};
 }
 
+void addPattern(DigestWriter& key, const NoisePattern& p) {
+    key.number(static_cast<int>(p.kind));
+    for (const double v : {p.scale, p.lacunarity, p.gain, p.warp, p.coverage, p.softness, p.contrast}) key.number(v);
+    key.number(p.octaves), key.number(p.seed);
+}
+
 class NoiseWalk final : public MediumWalk {
   public:
     NoiseWalk(const NoiseVolume& volume, const BrickWalk& walk, Vec3d origin, Vec3d direction)
@@ -89,7 +95,7 @@ class NoiseVolume::Sampled final : public PointField {
 };
 
 NoiseVolume::NoiseVolume(MediumOptics optics, const NoisePattern& pattern, const NoiseBox& box,
-                         const Transform& toRender)
+                         const Transform& toRender, KeptTables* kept)
     : OpticalMedium(std::move(optics)), field_(pattern), box_(box), brickCount_(bricksFor(field_, box)),
       thickest_(static_cast<float>(extinction().maximum())) {
     const auto inverse = toRender.inverse();
@@ -97,7 +103,14 @@ NoiseVolume::NoiseVolume(MediumOptics optics, const NoisePattern& pattern, const
     toBox_ = *inverse;
     const Vec3d cells = cellsPerMetre();
     margin_ = Vec3d{1 / cells.x, 1 / cells.y, 1 / cells.z} / 30.0;
-    bricks_ = sampleBounds(Sampled(*this), brickCount_);
+    DigestWriter key("noise bricks");
+    addPattern(key, pattern);
+    key.add(box.lower), key.add(box.upper);
+    for (const double v : {box.edge, box.scaleHeight}) key.number(v);
+    key.number(box.up);
+    bricks_ = KeptTables::get<BrickBounds>(kept, key.digest(), [&] {
+        return std::make_shared<const BrickBounds>(sampleBounds(Sampled(*this), brickCount_));
+    });
     for (int corner = 0; corner < 8; ++corner)
         bounds_.add(Vec3(toRender.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
                                          corner & 4 ? box.upper.z : box.lower.z})));
@@ -117,12 +130,15 @@ float NoiseVolume::density(Vec3d p) const noexcept {
     return thin > 0 ? thin * field_.at(p) : 0;
 }
 
-FieldBounds NoiseVolume::boundsAt(Vec3d p) const { return bricks_.at(Vec3(multiply(p - box_.lower, cellsPerMetre()))); }
+FieldBounds NoiseVolume::boundsAt(Vec3d p) const {
+    return bricks_->at(Vec3(multiply(p - box_.lower, cellsPerMetre())));
+}
 
 MediumWalk* NoiseVolume::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
     const Vec3d origin = toBox_.point(Vec3d(ray.origin)), direction = toBox_.vector(Vec3d(ray.direction));
     const Vec3d cells = cellsPerMetre();
-    const BrickWalk walk(bricks_, multiply(origin - box_.lower, cells), multiply(direction, cells), 0, tMax, thickest_);
+    const BrickWalk walk(*bricks_, multiply(origin - box_.lower, cells), multiply(direction, cells), 0, tMax,
+                         thickest_);
     return space.make<NoiseWalk>(*this, walk, origin, direction);
 }
 

@@ -3,9 +3,11 @@
 
 #include "math/transform.h"
 #include "media/medium_optics.h"
+#include "render/kept_tables.h"
 #include "volumes/brick_bounds.h"
 #include "volumes/noise_field.h"
 
+#include <memory>
 #include <optional>
 #include <variant>
 
@@ -24,7 +26,8 @@ struct NoiseBox {
 class NoiseVolume final : public OpticalMedium {
   public:
     // Requires an invertible transform and upper > lower.
-    NoiseVolume(MediumOptics, const NoisePattern&, const NoiseBox&, const Transform& toRender);
+    NoiseVolume(MediumOptics, const NoisePattern&, const NoiseBox&, const Transform& toRender,
+                KeptTables* kept = nullptr);
 
     Bounds3 bounds() const override { return bounds_; }
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
@@ -33,7 +36,7 @@ class NoiseVolume final : public OpticalMedium {
     float density(Vec3d p) const noexcept;
     // Of the brick around such a place.
     FieldBounds boundsAt(Vec3d p) const;
-    std::size_t brickCount() const { return bricks_.brickCount(); }
+    std::size_t brickCount() const { return bricks_->brickCount(); }
 
   private:
     class Sampled;
@@ -42,7 +45,7 @@ class NoiseVolume final : public OpticalMedium {
     NoiseField field_;
     NoiseBox box_;
     Vec3i brickCount_;
-    BrickBounds bricks_;
+    std::shared_ptr<const BrickBounds> bricks_;
     Transform toBox_; // render space to that of the box
     Vec3d margin_;    // beyond the box, for which its bounds hold, too: a thirtieth of a cell
     Bounds3 bounds_;

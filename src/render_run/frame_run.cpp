@@ -59,7 +59,8 @@ class FrameRun {
             const RenderOptions one = optionsOf({frames[i], i + 1, frames.size(), &told});
             if (one.checkpoint.resume && isThere(one)) continue;
             try {
-                if (const ExitCode code = RenderRun(one, common_).run(); code != ExitCode::done) {
+                checks_.forgetAll();
+                if (const ExitCode code = RenderRun(one, common_, &carry_).run(); code != ExitCode::done) {
                     end(frames[i], code);
                     return code;
                 }
@@ -86,11 +87,11 @@ class FrameRun {
     // Whether the image of a frame needs nothing more. What is wrong with the scene is told by the render.
     bool isThere(const RenderOptions& one) {
         if (one.part) return false; // parts say for themselves what they lack
-        const auto loaded = loadScene(one.input);
+        const auto loaded = carry_.scenes.load(one.input);
         if (!loaded->readable || loaded->diagnostics.hasErrors()) return false;
         BuildOptions build = one.build;
         build.geometry = false;
-        const BuiltScene built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
+        const BuiltScene built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics, &checks_);
         if (loaded->diagnostics.hasErrors() || !findFaults(built.film).empty()) return false;
         const FilmSettings film = filmSettings(built.film);
         const std::string asked = imagePath(one.output, film, one.input.path);
@@ -165,6 +166,8 @@ class FrameRun {
 
     const RenderOptions& options_;
     const CommonOptions& common_;
+    RenderCarry carry_;               // from frame to frame
+    SceneReuse checks_;               // likewise, of scenes without geometry; until something is rendered
     std::vector<int> done_, skipped_; // numbers of frames
 };
 

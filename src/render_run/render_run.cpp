@@ -19,13 +19,14 @@
 namespace abbe {
 
 ExitCode RenderRun::load() {
-    loaded_ = loadScene(options_.input);
+    loaded_ = carry_ ? carry_->scenes.load(options_.input) : loadScene(options_.input);
     watch_.lap();
     endPhase("reading", loaded_->parseSeconds);
     endPhase("checking", loaded_->resolveSeconds);
     if (loaded_->readable) {
         const WorkScope work(Work::building);
-        built_ = buildScene(loaded_->tree, loaded_->types, options_.build, loaded_->diagnostics);
+        built_ = buildScene(loaded_->tree, loaded_->types, options_.build, loaded_->diagnostics,
+                            carry_ ? &carry_->reuse : nullptr);
         const double seconds = watch_.lap();
         endPhase("building", seconds - built_.commitSeconds);
         endPhase("committing", built_.commitSeconds);

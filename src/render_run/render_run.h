@@ -15,6 +15,7 @@
 #include "render_run/render_options.h"
 #include "render_run/render_preview.h"
 #include "reports/render_report.h"
+#include "scene/reuse.h"
 #include "study/cost.h"
 
 #include <memory>
@@ -24,11 +25,18 @@
 
 namespace abbe {
 
+// What the renders of one process have in common, one after another.
+struct RenderCarry {
+    SceneLoader scenes;
+    SceneReuse reuse;
+};
+
 // One render from the command line to the files. The phases follow each other and are timed.
 class RenderRun {
   public:
-    RenderRun(const RenderOptions& options, const CommonOptions& common)
-        : options_(options), common_(common),
+    // Takes over what `carry` has of earlier renders, and leaves it what later ones can use; null: nothing.
+    RenderRun(const RenderOptions& options, const CommonOptions& common, RenderCarry* carry = nullptr)
+        : options_(options), common_(common), carry_(carry),
           report_(common.json && options.replay.empty()
                       ? makeJsonReport(common.console, options.frame, options.progressEvery)
                       : makeHumanReport(common.console, options.quiet || alone(), options.frame)) {}
@@ -122,8 +130,9 @@ class RenderRun {
 
     const RenderOptions& options_;
     const CommonOptions& common_;
+    RenderCarry* const carry_;
     std::unique_ptr<RenderReport> report_;
-    std::unique_ptr<LoadedScene> loaded_;
+    std::shared_ptr<LoadedScene> loaded_;
     BuiltScene built_;
     FilmSettings film_;
     RenderSettings settings_;

@@ -247,10 +247,9 @@ BuiltScene buildScene(const schema::SceneTree& tree, const schema::TypeTable& ty
         return built;
     }
     const auto start = std::chrono::steady_clock::now();
-    const std::size_t errors = diagnostics.errorCount();
     reuse->begin();
     SceneBuilder(tree, types, options, diagnostics, built, reuse).build();
-    reuse->end(diagnostics.errorCount() == errors,
+    reuse->end(!diagnostics.hasErrors(),
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return built;
 }

@@ -114,6 +114,8 @@ class BuildContext {
         return made;
     }
 
+    KeptTables* tables() { return reuse; }
+
   private:
     // Before a thing is made: that of an earlier building, or what had been reported and read until then.
     struct Making {

@@ -29,6 +29,7 @@ LightContext LightBuilder::contextOf(const Definition& d, const Motion& toRender
     context.zUp = context_.tree.header.zUp;
     context.time = motion_.opening();
     context.besideScattering = context_.built.render.strategy == Technique::Strategy::mis;
+    context.kept = context_.tables();
     return context;
 }
 
@@ -238,7 +239,7 @@ void addMeaning(DigestWriter& writer, const LightSphereParams& p) {
 }
 
 void addMeaning(DigestWriter& writer, const LightMeshParams& p) {
-    if (!p.file.value.empty()) writer.file(p.file.value);
+    if (!p.file.value.empty()) addFile(writer, p.file.value);
     for (const auto& [key, value] : p.file.keys) writer.text(key), writer.text(value);
     writer.number(p.points.size());
     for (const Vec3d point : p.points) writer.add(point);
@@ -292,23 +293,47 @@ std::unique_ptr<PlacedLight> loadIesLight(const IesLightParams& params, const Li
     return light;
 }
 
-std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams& params, const LightContext& context,
-                                                   BuildContext& scene) {
-    const std::string& path = params.image.value;
-    RgbImage file;
-    if (!readsFile(path, params.image.span, scene.diagnostics, [&] { file = readImage(path); })) return nullptr;
-    scene.noteFile(path);
+namespace {
+
+RgbSpace environmentSpace(const EnvironmentLightParams& params, const RgbImage& file) {
     RgbSpace space = file.chromaticities ? file.chromaticities->space() : rgb::rec709;
     for (const auto& [key, word] : params.image.keys)
         if (key == "space") space = abbe::findRgbSpace(word).value_or(space);
+    return space;
+}
+
+// Null after an error.
+std::shared_ptr<const EnvironmentTables> readEnvironment(const EnvironmentLightParams& params,
+                                                         const LightContext& context, Diagnostics& diagnostics) {
+    RgbImage file;
+    if (!readsFile(params.image.value, params.image.span, diagnostics, [&] { file = readImage(params.image.value); }))
+        return nullptr;
     std::string reason;
-    auto upsampling = makeRgbRadiance(space, reason);
+    auto upsampling = makeRgbRadiance(environmentSpace(params, file), reason);
     if (!upsampling) {
-        scene.diagnostics.error("E0403", params.image.span, reason);
+        diagnostics.error("E0403", params.image.span, reason);
         return nullptr;
     }
-    auto light = makeEnvironmentLight(params, {file.width(), file.height(), std::move(file.rgb)}, std::move(upsampling),
-                                      context.besideScattering, context, scene.diagnostics);
+    EnvironmentImage image{file.width(), file.height(), std::move(file.rgb)};
+    if (!checkEnvironmentImage(image, environmentScale(params), context.span, diagnostics)) return nullptr;
+    return std::make_shared<const EnvironmentTables>(std::move(image), std::move(upsampling), context.besideScattering);
+}
+
+} // namespace
+
+std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams& params, const LightContext& context,
+                                                   BuildContext& scene) {
+    DigestWriter key("environment");
+    addFile(key, params.image.value);
+    for (const auto& [name, word] : params.image.keys) key.text(name), key.text(word);
+    key.number(context.besideScattering);
+    const Span spans[] = {context.span, params.image.span};
+    auto tables = scene.reused<EnvironmentTables>(Reused::texture, key.digest(), spans,
+                                                  [&] { return readEnvironment(params, context, scene.diagnostics); });
+    if (!tables) return nullptr;
+    scene.noteFile(params.image.value);
+    if (!checkBrightestPixel(tables->image, environmentScale(params), context.span, scene.diagnostics)) return nullptr;
+    auto light = makeEnvironmentLight(params, std::move(tables), key.digest(), context, scene.diagnostics);
     if (light && !(light->power() > 0)) {
         scene.diagnostics.warning("W0602", params.image.span, "this environment is black; the light is left out");
         return nullptr;

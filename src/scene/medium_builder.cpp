@@ -1,8 +1,10 @@
 #include "scene/medium_builder.h"
 
+#include "lights/light_context.h"
 #include "math/vec.h"
 #include "media/atmosphere.h"
 #include "media/homogeneous.h"
+#include "media/mie_phase.h"
 #include "media/noise_media.h"
 #include "media/phase_functions.h"
 #include "media/phase_types.h"
@@ -241,7 +243,8 @@ MadeMedium makeNoiseVolume(const NoiseVolumeParams& params, const MediumContext&
     if (!place.inverse())
         diagnostics.error("E0641", span, "the transform of this volume flattens it", "has no inverse");
     if (!optics || !place.inverse() || !std::holds_alternative<NoiseBox>(box)) return {};
-    return {std::make_unique<NoiseVolume>(*optics, patternOf(params), std::get<NoiseBox>(box), place)};
+    return {std::make_unique<NoiseVolume>(*optics, patternOf(params), std::get<NoiseBox>(box), place,
+                                          context.scene.tables())};
 }
 
 MadeMedium makeNoiseMedium(const NoiseMediumParams& params, const MediumContext& context) {
@@ -346,6 +349,18 @@ schema::Reference PhaseBuilder::reference(const schema::Definition& d) {
     if (!phase) return {};
     phases_.push_back(std::move(phase));
     return {static_cast<std::uint32_t>(phases_.size() - 1)};
+}
+
+std::shared_ptr<const PhaseFunction> makeKeptMiePhase(const MiePhaseParams& params, const PhaseContext& context) {
+    DigestWriter key("mie");
+    key.number(params.radius), key.number(params.spread);
+    for (const Curve* curve : {params.index, params.absorption, params.surroundings}) {
+        key.number(curve != nullptr);
+        for (std::size_t i = 0; curve && i < MiePhase::kWavelengths; ++i)
+            key.number(curve->at(MiePhase::wavelength(i) * 1e9));
+        if (curve) addCurve(key, *curve);
+    }
+    return KeptTables::get<PhaseFunction>(context.scene.tables(), key.digest(), [&] { return makeMiePhase(params); });
 }
 
 std::shared_ptr<const PhaseFunction> makeTablePhase(const TablePhaseParams& params, const PhaseContext& context) {

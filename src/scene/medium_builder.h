@@ -39,9 +39,11 @@ class PhaseBuilder {
     std::vector<const schema::Definition*> open_; // being made
 };
 
+struct MiePhaseParams;
 struct MixPhaseParams;
 struct TablePhaseParams;
-// Those that need more than their parameters. Null after an error.
+// Those that need more than their parameters: for Mie, tables that are kept. Null after an error.
+std::shared_ptr<const PhaseFunction> makeKeptMiePhase(const MiePhaseParams&, const PhaseContext&);
 std::shared_ptr<const PhaseFunction> makeTablePhase(const TablePhaseParams&, const PhaseContext&);
 std::shared_ptr<const PhaseFunction> makeMixPhase(const MixPhaseParams&, const PhaseContext&);
 

@@ -298,7 +298,7 @@ void addMedia(std::vector<RegistryEntry>& list) {
     list.push_back(phase<HenyeyGreensteinPhaseParams, makeHenyeyGreensteinPhase>(henyeyGreensteinPhaseType()));
     list.push_back(phase<RayleighPhaseParams, makeRayleighPhase>(rayleighPhaseType()));
     list.push_back(phase<DrainePhaseParams, makeDrainePhase>(drainePhaseType()));
-    list.push_back(phase<MiePhaseParams, makeMiePhase>(miePhaseType()));
+    list.push_back(phase<MiePhaseParams, makeKeptMiePhase>(miePhaseType()));
     list.push_back(phase<TablePhaseParams, makeTablePhase>(tablePhaseType()));
     list.push_back(phase<MixPhaseParams, makeMixPhase>(mixPhaseType()));
 

@@ -6,10 +6,8 @@
 #include "textures/texture_store.h"
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <set>
-#include <sys/stat.h>
 
 namespace abbe {
 
@@ -18,43 +16,11 @@ using schema::Kind;
 using schema::Node;
 using schema::Value;
 
-void DigestWriter::text(std::string_view s) {
-    number(s.size());
-    bytes(std::as_bytes(std::span(s.data(), s.size())));
-}
-
-void DigestWriter::add(const Transform& t) {
-    for (const auto& row : t.a)
-        for (const double v : row) number(v);
-    add(t.t);
-}
-
-namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000; // ns
-// Times of files come in ticks of the kernel, of up to 10 ms: what is written twice in one has the same time twice.
-constexpr std::int64_t kUnsure = 40'000'000; // ns
-
-std::int64_t nanoseconds(const timespec& t) { return t.tv_sec * kSecond + t.tv_nsec; }
-
-std::int64_t now() {
-    timespec t{};
-    clock_gettime(CLOCK_REALTIME, &t);
-    return nanoseconds(t);
-}
-
-} // namespace
-
-void DigestWriter::file(const std::filesystem::path& path) {
-    text(path.native());
-    struct stat s {};
-    if (stat(path.c_str(), &s) != 0) return number(-1);
-    const std::int64_t modified = nanoseconds(s.st_mtim), changed = nanoseconds(s.st_ctim);
-    for (const std::uint64_t n : {std::uint64_t{s.st_dev}, std::uint64_t{s.st_ino}}) number(n);
-    number(static_cast<std::int64_t>(s.st_size));
-    number(modified), number(changed);
-    const std::int64_t read = now();
-    if (std::max(modified, changed) + kUnsure > read) number(read);
+void addFile(DigestWriter& writer, const std::filesystem::path& path) {
+    const FileIdentity file = identityOf(path.string());
+    writer.text(path.native());
+    for (const std::uint64_t n : {file.device, file.number, file.size}) writer.number(n);
+    for (const std::int64_t n : {file.modified, file.changed, file.unsure}) writer.number(n);
 }
 
 namespace {
@@ -150,11 +116,12 @@ class MeaningReader {
             return tiles(path, tile);
         if (!std::filesystem::is_regular_file(path, error)) return;
         if (!tree_.made.empty() && isBelow(path.string(), tree_.made)) return contents(path);
-        writer_.file(path);
+        addFile(writer_, path);
         std::string head(256, '\0');
         head.resize(RegularFile(path.string()).readAt(0, head));
         if (looksLikeGltf(head))
-            for (const std::string& buffer : gltfBufferFiles(path.string())) writer_.file(path.parent_path() / buffer);
+            for (const std::string& buffer : gltfBufferFiles(path.string()))
+                addFile(writer_, path.parent_path() / buffer);
     }
 
     void tiles(const std::filesystem::path& pattern, std::size_t at) {
@@ -162,7 +129,7 @@ class MeaningReader {
         for (int tile = 1001; tile < 2000; ++tile) {
             const std::filesystem::path path =
                 std::string(pattern.native()).replace(at, kTilePattern.size(), std::to_string(tile));
-            if (std::filesystem::is_regular_file(path, error)) writer_.file(path);
+            if (std::filesystem::is_regular_file(path, error)) addFile(writer_, path);
         }
     }
 
@@ -204,12 +171,19 @@ void SceneReuse::begin() {
     ++building_;
     counters_ = {};
     asked_.clear();
+    geometry.built = geometry.kept = 0;
+    if (textures && !textures->isCurrent()) textures.reset();
 }
 
 // After a faulty building all stays that the last faultless one used: the fault may be one of typing. What others left
 // goes.
 void SceneReuse::end(bool faultless, double seconds) {
     counters_.seconds = seconds;
+    if (textures) {
+        const TextureStore::Opened opened = textures->takeOpened();
+        counters_.texturesRead += opened.anew;
+        counters_.texturesKept += opened.again;
+    }
     counters_.structuresBuilt = geometry.built;
     counters_.structuresKept = geometry.kept;
     if (faultless) origin = nextOrigin;
@@ -230,6 +204,18 @@ const SceneReuse::Kept* SceneReuse::find(const Digest& key, const Digest& view) 
     }
     found->second.used = building_;
     return &found->second;
+}
+
+std::shared_ptr<const void> SceneReuse::find(const Digest& key) {
+    const Kept* const known = find(key, Digest{});
+    ++(known ? counters_.tablesKept : counters_.tablesMade);
+    return known ? known->thing : nullptr;
+}
+
+void SceneReuse::keep(const Digest& key, std::shared_ptr<const void> table) {
+    Kept kept;
+    kept.thing = std::move(table);
+    keep(key, std::move(kept));
 }
 
 void SceneReuse::keep(const Digest& key, Kept kept) {

@@ -3,8 +3,8 @@
 
 #include "base/diagnostic.h"
 #include "geometry/embree_scene_builder.h"
-#include "math/byte_hash.h"
-#include "math/transform.h"
+#include "math/digest.h"
+#include "render/kept_tables.h"
 #include "schema/scene_tree.h"
 
 #include <cstdint>
@@ -35,33 +35,8 @@ struct ReuseCounters {
     bool operator==(const ReuseCounters&) const = default;
 };
 
-// 128 bits that stand for all that a thing is made of. No defence against anyone who wants a collision.
-struct Digest {
-    std::uint64_t first = 0, second = 0;
-
-    auto operator<=>(const Digest&) const = default;
-};
-
-class DigestWriter {
-  public:
-    DigestWriter() { number(std::uint64_t{0x5bd1e995}, second_); }
-
-    void bytes(std::span<const std::byte> b) { first_.add(b), second_.add(b); }
-    void text(std::string_view);
-    template <typename T>
-    requires std::is_arithmetic_v<T>
-    void number(T value) { number(value, first_), number(value, second_); }
-    void add(const Digest& d) { number(d.first), number(d.second); }
-    void add(Vec3d v) { number(v.x), number(v.y), number(v.z); }
-    void add(const Transform&);
-    // Its name, size, times and number. One that changed a moment ago may change again unseen: it equals nothing.
-    void file(const std::filesystem::path&);
-    Digest digest() const { return {first_.value(), second_.value()}; }
-
-  private:
-    template <typename T> static void number(T value, ByteHash& hash) { hash.add(std::as_bytes(std::span(&value, 1))); }
-    ByteHash first_, second_;
-};
+// Its name, size, times and number. One that changed a moment ago may change again unseen: it equals nothing.
+void addFile(DigestWriter&, const std::filesystem::path&);
 
 // What a definition says, however it is laid out in its file: parameters are replaced, and textures, spectra and files
 // that it names are part of it, the latter by their times and sizes.
@@ -78,10 +53,10 @@ enum class Reused : std::uint8_t { shape, place, texture, volume, table };
 // Owned by whoever builds a scene again and again: a view that follows its file, an animation. Not thread-safe; but
 // what was built with it shares what is kept, and may go on rendering while the next is built. What the last faultless
 // building did not use is forgotten with its end. Bits of pictures are those of a building without it.
-class SceneReuse {
+class SceneReuse final : public KeptTables {
   public:
     SceneReuse();
-    ~SceneReuse();
+    ~SceneReuse() override;
     SceneReuse(const SceneReuse&) = delete;
     SceneReuse& operator=(const SceneReuse&) = delete;
 
@@ -122,6 +97,9 @@ class SceneReuse {
     double reach = 0;                       // m, how far a camera may be from an origin that is kept
 
   private:
+    std::shared_ptr<const void> find(const Digest&) override;
+    void keep(const Digest&, std::shared_ptr<const void>) override;
+
     std::map<Digest, Kept> kept_;
     std::map<Digest, std::size_t> asked_;
     ReuseCounters counters_;

@@ -153,7 +153,10 @@ const std::shared_ptr<TextureStore>& TextureBuilder::store() {
         TextureStoreSettings settings;
         settings.bytes = static_cast<std::int64_t>(context_.built.render.textureCache * 1048576);
         settings.open = context_.options.geometry || context_.options.textures;
-        store_ = std::make_shared<TextureStore>(std::move(settings));
+        SceneReuse* const reuse = context_.reuse;
+        const bool kept = reuse && reuse->textures && reuse->textures->settings() == settings;
+        store_ = kept ? reuse->textures : std::make_shared<TextureStore>(std::move(settings));
+        if (reuse) reuse->textures = store_;
     }
     return store_;
 }

@@ -36,6 +36,12 @@ class GridRequests {
     }
 
     const std::vector<VdbRequest>& list() const { return list_; }
+    Digest digest(const std::string& file) const {
+        DigestWriter writer("grids");
+        addFile(writer, file);
+        for (const VdbRequest& r : list_) writer.text(r.grid), writer.number(static_cast<int>(r.use));
+        return writer.digest();
+    }
     void report(const VdbFault& fault, Span file, Diagnostics& diagnostics) const {
         using Kind = VdbFault::Kind;
         const bool name = fault.kind == Kind::noGrid, ofGrid = name || fault.kind == Kind::wrongKind;
@@ -58,6 +64,20 @@ class GridRequests {
     std::vector<VdbRequest> list_;
     std::vector<Span> spans_;
 };
+
+// Null after an error.
+std::shared_ptr<const std::vector<VdbGrid>> readGrids(const Text& file, const GridRequests& requests,
+                                                      Diagnostics& diagnostics) {
+    auto read = readVdb(file.value, requests.list());
+    if (const auto* fault = std::get_if<VdbFault>(&read)) {
+        requests.report(*fault, file.span, diagnostics);
+        return nullptr;
+    }
+    auto& grids = std::get<std::vector<VdbGrid>>(read);
+    for (const VdbGrid& grid : grids)
+        for (const std::string& note : grid.notes) diagnostics.warning("W0690", file.span, note, "put right");
+    return std::make_shared<const std::vector<VdbGrid>>(std::move(grids));
+}
 
 ScaledGrid scaled(VdbGrid& grid, const std::optional<Text>& text) {
     return {std::move(*grid.scalar), keyOf(text, "scale", 1), keyOf(text, "offset", 0)};
@@ -120,7 +140,8 @@ bool checkDrift(const VdbParams& params, const VoxelGrid& density, const GridExt
 }
 
 MadeMedium volumeOf(const VdbParams& params, const MediumOptics& optics, VoxelGrid density, GridExtras extras,
-                    const Transform& place, Diagnostics& diagnostics) {
+                    const Transform& place, BuildContext& scene, const Digest& grids) {
+    Diagnostics& diagnostics = scene.diagnostics;
     if (!checkDrift(params, density, extras, place, diagnostics)) return {};
     const bool hot = extras.glow && extras.glow->thermal();
     const double hottest = hot ? extras.temperature->offset +
@@ -132,7 +153,7 @@ MadeMedium volumeOf(const VdbParams& params, const MediumOptics& optics, VoxelGr
         return {};
     }
     auto medium = std::make_unique<GridMedium>(optics, std::move(density), keyOf(params.density, "scale", 1), place,
-                                               std::move(extras));
+                                               std::move(extras), scene.tables(), grids);
     std::unique_ptr<Light> light;
     if (medium->gridEmission())
         light = std::make_unique<VolumeLight>(*medium->gridEmission());
@@ -155,19 +176,17 @@ MadeMedium makeVdbVolume(const VdbParams& params, const MediumContext& context) 
                           "has no inverse");
     if (!optics || !place.inverse() || !checkVdbGlow(params, *optics, context)) return {};
     const GridRequests requests(params);
-    auto read = readVdb(params.file.value, requests.list());
-    if (const auto* fault = std::get_if<VdbFault>(&read)) {
-        requests.report(*fault, params.file.span, diagnostics);
-        return {};
-    }
-    auto& grids = std::get<std::vector<VdbGrid>>(read);
-    for (const VdbGrid& grid : grids)
-        for (const std::string& note : grid.notes) diagnostics.warning("W0690", params.file.span, note, "put right");
+    const Digest key = requests.digest(params.file.value);
+    const auto read =
+        context.scene.reused<std::vector<VdbGrid>>(Reused::volume, key, std::span(&params.file.span, 1),
+                                                   [&] { return readGrids(params.file, requests, diagnostics); });
+    if (!read) return {};
     context.scene.noteFile(params.file.value);
+    std::vector<VdbGrid> grids = *read; // of the same voxels
     if (grids[0].scalar->empty())
         diagnostics.warning("W0691", params.file.span, "this grid has no voxels", "nothing will be seen of it");
     GridExtras extras = extrasOf(params, *optics, std::span(grids).subspan(1), context.scene);
-    return volumeOf(params, *optics, std::move(*grids[0].scalar), std::move(extras), place, diagnostics);
+    return volumeOf(params, *optics, std::move(*grids[0].scalar), std::move(extras), place, context.scene, key);
 }
 
 } // namespace abbe

@@ -262,8 +262,8 @@ bool ImageTexture::prepareShading(TextureUse use, Diagnostics& diagnostics) {
 
 void ImageTexture::openTile(ImageTile& tile, Diagnostics& diagnostics) {
     const bool compare = rgbSpace() && channels_ == 3;
-    TextureFile file = textureFile(tile.path, tile.info, *encoding_.encoding, store_->settings().directory,
-                                   compare ? &store_->upsampling(*rgbSpace()) : nullptr);
+    TextureFile file =
+        store_->file(tile.path, tile.info, *encoding_.encoding, compare ? &store_->upsampling(*rgbSpace()) : nullptr);
     tile.handle = store_->open(file.path);
     tile.opened = std::move(file.path);
     tile.stored = file.stored;

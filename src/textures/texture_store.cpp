@@ -291,7 +291,27 @@ const UpsamplingTable& TextureStore::upsampling(const RgbSpace& space) {
     return *table;
 }
 
+TextureFile TextureStore::file(const std::string& picture, const AbbeImageInfo& info, const ColorEncoding& encoding,
+                               const UpsamplingTable* upsampling) {
+    const FileIdentity now = identityOf(picture);
+    Known& known = files_[{picture, encoding.name, info.first}];
+    std::error_code error;
+    if (!known.file.path.empty() && known.picture == now && fs::exists(known.file.path, error)) return known.file;
+    known = {};
+    TextureFile made = textureFile(picture, info, encoding, settings_.directory, upsampling);
+    known = {now, made};
+    return made;
+}
+
+bool TextureStore::isCurrent() const {
+    if (damaged_.load(std::memory_order_relaxed)) return false;
+    return std::ranges::all_of(textures_, [](const auto& one) { return identityOf(one.first) == one.second; });
+}
+
 void* TextureStore::open(const std::string& path) {
+    const auto [known, isNew] = textures_.try_emplace(path);
+    ++(isNew ? opened_.anew : opened_.again);
+    if (isNew) known->second = identityOf(path);
     AbbeImageFault fault{};
     if (!system_) {
         module_ = &imageModule();

@@ -2,15 +2,20 @@
 // disk; and the texture system that has tiles of them in memory, up to a limit.
 #pragma once
 
+#include "base/file.h"
 #include "spectrum/color_space.h"
 #include "spectrum/upsampling_table.h"
 #include "textures/image_file.h"
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
 
 namespace abbe {
 
@@ -67,6 +72,8 @@ struct TextureStoreSettings {
     std::filesystem::path directory = textureCacheDirectory();        // of converted pictures; empty: none
     std::filesystem::path tables = UpsamplingTable::cacheDirectory(); // of upsampling tables
     bool open = true; // false: pictures are only looked at, as for a check of the scene
+
+    bool operator==(const TextureStoreSettings&) const = default;
 };
 
 // Filled on one thread; then const and shared between threads. Lookups do not allocate but for tiles.
@@ -80,12 +87,23 @@ class TextureStore {
     const TextureStoreSettings& settings() const { return settings_; }
     // Made or loaded with the first call for a space.
     const UpsamplingTable& upsampling(const RgbSpace&);
-    // Of a file that textureFile() gave, for as long as the store lives. Throws ImageFileError.
+    // textureFile() into its directory, remembered for as long as the picture stays the same.
+    TextureFile file(const std::string& picture, const AbbeImageInfo&, const ColorEncoding&, const UpsamplingTable*);
+    // Of a file that file() gave, for as long as the store lives. Throws ImageFileError.
     void* open(const std::string& path);
     // False if tiles could not be read.
     bool lookup(void* texture, const AbbeTextureLookup& l, float* result) const noexcept {
-        return module_->lookup(system_, texture, &l, result) != 0;
+        if (module_->lookup(system_, texture, &l, result) != 0) return true;
+        damaged_.store(true, std::memory_order_relaxed);
+        return false;
     }
+    // Whether it may serve for another building of a scene: what it opened is still the same, and could be read.
+    bool isCurrent() const;
+    // Files since the last call: opened for the first time, and those that were open already.
+    struct Opened {
+        std::size_t anew = 0, again = 0;
+    };
+    Opened takeOpened() { return std::exchange(opened_, {}); }
     // Why the last lookup of this thread failed.
     std::string lookupFault() const;
     AbbeTextureStatistics statistics() const;
@@ -95,6 +113,14 @@ class TextureStore {
     const AbbeImageModule* module_ = nullptr; // with the first picture
     void* system_ = nullptr;
     std::map<std::string_view, std::unique_ptr<const UpsamplingTable>> tables_; // by name of the space
+    struct Known {
+        FileIdentity picture;
+        TextureFile file;
+    };
+    std::map<std::tuple<std::string, std::string_view, std::int32_t>, Known> files_; // by picture, encoding, channel
+    std::map<std::string, FileIdentity> textures_;                                   // that are open
+    Opened opened_;
+    mutable std::atomic<bool> damaged_ = false;
 };
 
 } // namespace abbe

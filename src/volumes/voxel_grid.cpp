@@ -98,7 +98,7 @@ GridBytes::GridBytes(std::size_t size) : size_(size) {
     constexpr std::size_t kLargePage = std::size_t{1} << 21;
     const std::size_t alignment = size >= 2 * kLargePage ? kLargePage : kAlignment;
     const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
-    data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, std::max(rounded, alignment))));
+    data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, std::max(rounded, alignment))), Release{});
     if (!data_) throw std::bad_alloc();
     if (alignment == kLargePage) ::madvise(data_.get(), rounded, MADV_HUGEPAGE);
 }

@@ -22,7 +22,7 @@ using Vec3i = Vec3T<int>;
 // No grid has active voxels whose coordinates are further from 0 than this.
 inline constexpr int kFarthestVoxel = 1 << 26;
 
-// Bytes of one NanoVDB grid, aligned as it asks for.
+// Bytes of one NanoVDB grid, aligned as it asks for. Copies are of the same bytes.
 class GridBytes {
   public:
     GridBytes() = default;
@@ -36,7 +36,7 @@ class GridBytes {
     struct Release {
         void operator()(std::byte*) const;
     };
-    std::unique_ptr<std::byte[], Release> data_;
+    std::shared_ptr<std::byte[]> data_;
     std::size_t size_ = 0;
 };
 

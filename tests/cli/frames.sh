@@ -110,6 +110,30 @@ expect 0 render unused.scene --frames 1-2 -o d.exr --png off
 says err W0698
 [[ $(grep -cF 'warning[W0205]' err) -eq 1 ]] || fault "a warning of the scene is told with each frame"
 
+# What frames take over from each other does not show: the camera moves, something turns, the rest stands still.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >corner.obj
+cat >kept.scene <<'END'
+scene 1
+film { size 24 24 }
+render { samples 4; fps 10 }
+camera { look-at 0 0.5 0; exposure 2 stops; at 0 s { from 0 1 4 }; at 1 s { from 0 1 4 }; at 2 s { from 1 1 4 } }
+light daylight { elevation 40 deg; azimuth 20 deg }
+light quad { size 1 1; luminance 5000 nits; transform { rotate x 90 deg; translate 0 3 0 } }
+material clay diffuse { reflectance 0.4 }
+shape plane { material clay }
+shape mesh "corner.obj" { material clay }
+shape subdivision { points { - -1 0 0; - -1 1 0; - -2 1 0; - -2 0 0 }; faces { - 0 1 2 3 }; dicing 2 px; material clay }
+object thing { shape sphere { radius 0.2 }; shape mesh "corner.obj" }
+instance thing { transform { translate 1 0 1 } }
+instance thing { transform { at 0 s { rotate y 0 deg }; at 1 s { rotate y 90 deg } } }
+volume noise { size 1 1 1; extinction 2 per-m; scale 0.3 }
+END
+expect 0 render kept.scene --frames 1-3,12-14 -o kept.####.exr "${fast[@]}"
+for n in 1 2 3 12 13 14; do
+    expect 0 render kept.scene --frames $n -o alone.exr "${fast[@]}"
+    same_pixels "$(printf 'kept.%04d.exr' $n)" "$(printf 'alone.%04d.exr' $n)"
+done
+
 # A frame that fails ends all.
 mkdir f.0003.exr
 expect 3 render shot.scene --frames 1-5 -o f.####.exr --png off
