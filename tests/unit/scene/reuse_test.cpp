@@ -141,7 +141,6 @@ TEST_CASE("reuse: what surfaces are made of, lights, camera and film leave geome
     };
     isKept(series.next(text));
     isKept(series.next(replaced(text, "reflectance 0.4", "reflectance 0.8")));
-    isKept(series.next(replaced(text, "red diffuse { reflectance 0.4 }", "red dielectric")));
     isKept(series.next(replaced(text, "radiance 5", "radiance 9")));
     isKept(series.next(replaced(text, "sky { radiance 1 }", "sky { luminance 3000 nits }")));
     isKept(series.next(replaced(text, "camera {", "camera { fov 20 deg;")));
@@ -182,6 +181,17 @@ TEST_CASE("reuse: what changed of the geometry is made, and nothing else") {
     CHECK(c.structuresBuilt == 2); // the object is as it was again
 }
 
+// Rays may have to pass over surfaces of glass in glass, for which trees are built.
+TEST_CASE("reuse: glass in other glass is another tree") {
+    const std::string text = kHead + kShapes;
+    Series series;
+    series.next(text);
+    const ReuseCounters c = series.next(replaced(text, "red diffuse { reflectance 0.4 }", "red dielectric"));
+    CHECK(c.placesMade == 0);
+    CHECK(c.structuresBuilt == 1);
+    CHECK(c.structuresKept == 1);
+}
+
 TEST_CASE("reuse: a camera that moves takes the origin of render space along") {
     const std::string text = kHead + kShapes, moved = replaced(text, "from 0 1 5", "from 0.5 1 5");
     Series series;
@@ -198,11 +208,16 @@ TEST_CASE("reuse: a camera that moves takes the origin of render space along") {
     CHECK(c.placesMade == 0);
     CHECK(c.structuresBuilt == 0);
     CHECK(kept->built.scene.eye.x == doctest::Approx(-0.5));
-    // The same picture, but for rounding.
+    // The same picture, but for rounding, which turns a few samples at edges.
     const auto fresh = buildText(text, nullptr);
     const TestImage a = kept->render(), b = fresh->render();
+    int other = 0;
     for (int y = 0; y < 12; ++y)
-        for (int x = 0; x < 16; ++x) CHECK(a.film.mean(x, y).y == doctest::Approx(b.film.mean(x, y).y).epsilon(0.02));
+        for (int x = 0; x < 16; ++x) {
+            const double one = a.film.mean(x, y).y, two = b.film.mean(x, y).y;
+            other += std::abs(one - two) > 0.001 * two;
+        }
+    CHECK(other <= 10);
     // Too far for single precision: everything moves.
     buildText(replaced(text, "from 0 1 5", "from 0 1 5000"), &series.reuse);
     CHECK_FALSE(series.reuse.counters().viewKept);
