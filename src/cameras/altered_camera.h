@@ -1,5 +1,5 @@
 // Cameras that change what another one does: one whose shutter and movement matter, because something moves while it is
-// open, one without the effects that it has, and one that stands elsewhere.
+// open, one without the effects that it has, one that stands elsewhere, and one with fewer pixels.
 #pragma once
 
 #include "cameras/exposure.h"
@@ -118,6 +118,50 @@ class MovedCamera final : public Camera {
 
     std::unique_ptr<const Camera> inner_;
     Vec3d place_; // m
+};
+
+// Another camera on a film of fewer pixels: those of a rough picture, each as wide as `cell` of the inner one's.
+class RoughCamera final : public Camera {
+  public:
+    // `inner` outlives it. Requires: cell >= 1.
+    RoughCamera(const Camera& inner, int cell) : inner_(inner), cell_(static_cast<float>(cell)) {}
+
+    CameraRay ray(const CameraSample& sample) const noexcept override {
+        CameraSample finer = sample;
+        finer.film = sample.film * cell_;
+        return inner_.ray(finer);
+    }
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override {
+        const auto cell = static_cast<double>(cell_);
+        const auto seen = inner_.project(p, time, near * cell);
+        return seen ? std::optional(*seen * (1 / cell)) : std::nullopt;
+    }
+    float rayTime(float u) const noexcept override { return inner_.rayTime(u); }
+    // Densities are of places on the film in pixels, of which there are fewer.
+    std::optional<LensConnection> connect(const LensQuery& query) const noexcept override {
+        auto result = inner_.connect(finer(query));
+        if (!result) return result;
+        result->film = result->film * (1 / cell_);
+        result->importance /= square(cell_);
+        result->pdfFacingArea /= square(cell_);
+        return result;
+    }
+    float pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept override {
+        return inner_.pdfFacingArea(finer(query), ray) / square(cell_);
+    }
+    bool sharesLens() const override { return inner_.sharesLens(); }
+    bool usesLens() const override { return inner_.usesLens(); }
+    bool disperses() const override { return inner_.disperses(); }
+
+  private:
+    LensQuery finer(LensQuery query) const {
+        query.filmLower = query.filmLower * cell_;
+        query.filmUpper = query.filmUpper * cell_;
+        return query;
+    }
+
+    const Camera& inner_;
+    float cell_;
 };
 
 } // namespace abbe

@@ -67,6 +67,14 @@ std::optional<KeyedTransform> toFile(const CameraParams& params, const Shutter& 
     return KeyedTransform(std::move(keys));
 }
 
+std::optional<KeyedTransform> posed(const CameraPose& pose, const CameraContext& context, Diagnostics& diagnostics) {
+    CameraParams params;
+    params.from = pose.from;
+    params.lookAt = pose.lookAt;
+    params.up = pose.up;
+    return lookAt(params, {0, context.span, {}, {}, {}}, context.zUp, diagnostics);
+}
+
 // From the camera to what it looks at when the shutter opens; between two moments it changes evenly.
 std::optional<double> lookAtDistance(const CameraParams& params, double opening) {
     std::optional<double> before;
@@ -227,14 +235,16 @@ std::optional<CameraPlace> placeCamera(const CameraParams& params, const CameraC
                                        Diagnostics& diagnostics) {
     const auto shutter = shutterOf(params, context, diagnostics);
     if (!shutter) return std::nullopt;
-    const auto inFile = toFile(params, *shutter, context, diagnostics);
+    const auto inFile =
+        context.pose ? posed(*context.pose, context, diagnostics) : toFile(params, *shutter, context, diagnostics);
     if (!inFile) return std::nullopt;
     const Transform toWorld = inFile->at(shutter->open).then(context.toWorld);
     const auto axis = [&](Vec3d v) { return Vec3(normalize(toWorld.vector(v))); };
     const bool moves = inFile->movesDuring(shutter->open, shutter->timeAt(1));
     return CameraPlace{toWorld.point({}), Frame{axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})},
-                       lookAtDistance(params, shutter->open), *shutter,
-                       moves ? Motion().then(*inFile).then(context.toWorld) : Motion(toWorld)};
+                       context.pose ? length(context.pose->lookAt - context.pose->from)
+                                    : lookAtDistance(params, shutter->open),
+                       *shutter, moves ? Motion().then(*inFile).then(context.toWorld) : Motion(toWorld)};
 }
 
 std::optional<double> focusDistance(const LensCameraParams& params, const CameraPlace& place,

@@ -52,6 +52,12 @@ std::vector<schema::FieldInfo> placementFields(); // and `time`, `shutter` and `
 std::vector<schema::FieldInfo> lensCameraFields();
 schema::FieldInfo fStopField(std::string_view doc); // with the block of its blades
 
+// Where a camera stands in place of what the scene says, in the axes of the scene, m. It does not move there.
+struct CameraPose {
+    Vec3d from, lookAt, up;
+    double size = 1; // of what a camera without a vanishing point shows, in units of its own
+};
+
 struct CameraContext {
     Transform toWorld; // from the axes of the file: the rotation of a z-up scene
     bool zUp = false;
@@ -60,6 +66,7 @@ struct CameraContext {
     double frameTime = 0; // s, of the frame that is shown; comes to the camera's own time
     // Middle of the bounds of a named shape in world space at a time; nothing if that shape has no size or place.
     std::function<std::optional<Vec3d>(std::string_view, double)> middleOf = {};
+    std::optional<CameraPose> pose = {}; // there it is to stand
 };
 
 struct PlacedCamera {
@@ -67,7 +74,8 @@ struct PlacedCamera {
     Vec3d origin;                   // the camera's position in world space
     Exposure exposure;
     Shutter shutter;
-    Motion toWorld; // of camera space; moves only if it does so while the shutter is open
+    Motion toWorld;                            // of camera space; moves only if it does so while the shutter is open
+    std::optional<double> lookAtDistance = {}; // m, if it is told what to look at
 };
 
 // A camera's place in world space and its axes when the shutter opens: x right, y up, looking along -z.

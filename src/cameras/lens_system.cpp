@@ -249,7 +249,11 @@ std::optional<PlacedCamera> makeLensSystem(const LensSystemParams& params, const
     optics.opening = *opening;
     return PlacedCamera{
         std::make_unique<LensSystemCamera>(place->axes, context.filmSize, params.sensor.x, std::move(*train), optics),
-        place->origin, *exposure, place->shutter, place->toWorld};
+        place->origin,
+        *exposure,
+        place->shutter,
+        place->toWorld,
+        place->lookAtDistance};
 }
 
 } // namespace abbe

@@ -211,8 +211,12 @@ std::optional<PlacedCamera> makePerspective(const PerspectiveParams& params, con
     lens.squeeze = params.squeeze;
     lens.shift = {params.shift.x * params.squeeze / lens.focalLength, params.shift.y / lens.focalLength};
     lens.tilt = params.tilt;
-    return PlacedCamera{std::make_unique<PerspectiveCamera>(place->axes, context.filmSize, lens), place->origin,
-                        *exposure, place->shutter, place->toWorld};
+    return PlacedCamera{std::make_unique<PerspectiveCamera>(place->axes, context.filmSize, lens),
+                        place->origin,
+                        *exposure,
+                        place->shutter,
+                        place->toWorld,
+                        place->lookAtDistance};
 }
 
 } // namespace abbe

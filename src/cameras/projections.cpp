@@ -84,9 +84,14 @@ std::optional<PlacedCamera> makeOrthographic(const OrthographicParams& params, c
     const auto place = placeCamera(params, context, diagnostics);
     if (!place) return std::nullopt;
     ABBE_CHECK(params.width || params.height);
-    const double pixel = params.width ? *params.width / context.filmSize.x : *params.height / context.filmSize.y;
-    return PlacedCamera{std::make_unique<OrthographicCamera>(place->axes, context.filmSize, pixel), place->origin,
-                        exposureOf(params), place->shutter, place->toWorld};
+    const double own = params.width ? *params.width / context.filmSize.x : *params.height / context.filmSize.y;
+    const double pixel = own * (context.pose ? context.pose->size : 1);
+    return PlacedCamera{std::make_unique<OrthographicCamera>(place->axes, context.filmSize, pixel),
+                        place->origin,
+                        exposureOf(params),
+                        place->shutter,
+                        place->toWorld,
+                        place->lookAtDistance};
 }
 
 schema::TypeInfo sphericalType() {
@@ -203,7 +208,11 @@ std::optional<PlacedCamera> makeSpherical(const SphericalParams& params, const C
     const auto place = placeCamera(params, context, diagnostics);
     if (!place) return std::nullopt;
     return PlacedCamera{std::make_unique<SphericalCamera>(place->axes, context.filmSize, params.width, params.height),
-                        place->origin, exposureOf(params), place->shutter, place->toWorld};
+                        place->origin,
+                        exposureOf(params),
+                        place->shutter,
+                        place->toWorld,
+                        place->lookAtDistance};
 }
 
 } // namespace abbe

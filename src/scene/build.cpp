@@ -36,6 +36,10 @@ class SceneBuilder final : public schema::Resolver {
         : context_(tree, types, options, diagnostics, built, *this, reuse) {}
 
     void build();
+    void buildCameraAlone() {
+        buildSettings();
+        cameras_.build();
+    }
 
     const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&) override;
     schema::ComplexIndex metal(std::string_view name, Span span, Diagnostics& d) override {
@@ -252,6 +256,13 @@ BuiltScene buildScene(const schema::SceneTree& tree, const schema::TypeTable& ty
     reuse->end(!diagnostics.hasErrors(),
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return built;
+}
+
+LoneCamera buildCamera(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,
+                       Diagnostics& diagnostics) {
+    BuiltScene built;
+    SceneBuilder(tree, types, options, diagnostics, built, nullptr).buildCameraAlone();
+    return {std::move(built.scene.camera), built.scene.origin, built.cameraPose};
 }
 
 } // namespace abbe

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "cameras/exposure.h"
+#include "cameras/camera_params.h"
 #include "film/film_params.h"
 #include "film/layer_plan.h"
 #include "math/motion.h"
@@ -20,8 +20,9 @@ namespace abbe {
 
 // What the command line may change.
 struct BuildOptions {
-    std::string camera;        // name; empty: the only or first one
-    std::optional<Vec2i> size; // film size in pixels
+    std::string camera;                        // name; empty: the only or first one
+    std::optional<CameraPose> cameraPose = {}; // it stands there, and not where the scene says
+    std::optional<Vec2i> size;                 // film size in pixels
     std::optional<std::int64_t> samples;
     std::optional<std::int64_t> seed;
     std::optional<double> noise;        // relative
@@ -65,7 +66,8 @@ struct BuiltScene {
     FilmParams film;
     LayerPlan layers;
     RenderParams render;
-    Interval shutter; // when the camera's shutter is open, from its first light to its last
+    Interval shutter;      // when the camera's shutter is open, from its first light to its last
+    CameraPose cameraPose; // where the camera stands when the shutter opens, in the axes of the scene
     Exposure cameraExposure;
     Span cameraSpan;     // of the camera's definition
     double exposure = 1; // factor of the camera's exposure
@@ -80,5 +82,14 @@ struct BuiltScene {
 // What `reuse` has of earlier buildings (scene/reuse.h) is taken over where it is the same.
 BuiltScene buildScene(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&,
                       SceneReuse* reuse = nullptr);
+
+// The camera alone, as buildScene() would make it: for one that is moved while its scene stays as it was built. Its
+// rays are relative to its own position, `origin`. Null after an error.
+struct LoneCamera {
+    std::unique_ptr<const Camera> camera;
+    Vec3d origin; // world space
+    CameraPose pose;
+};
+LoneCamera buildCamera(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&);
 
 } // namespace abbe

@@ -60,6 +60,21 @@ CameraContext CameraBuilder::contextOf(const Definition& d) {
     return camera;
 }
 
+namespace {
+
+// What the middle of the picture shows lies at some distance, where nobody says what it is.
+CameraPose poseOf(const PlacedCamera& placed, Vec3d upright) {
+    constexpr double kSomeDistance = 1, kLevel = 1e-6;
+    const Transform toWorld = placed.toWorld.at(placed.shutter.open);
+    const auto axis = [&](Vec3d v) { return normalize(toWorld.vector(v)); };
+    const Vec3d ahead = axis({0, 0, -1});
+    const bool level = std::abs(dot(axis({1, 0, 0}), upright)) < kLevel && std::abs(dot(ahead, upright)) < 1 - kLevel;
+    return {placed.origin, placed.origin + ahead * placed.lookAtDistance.value_or(kSomeDistance),
+            level ? upright : axis({0, 1, 0}), 1};
+}
+
+} // namespace
+
 void CameraBuilder::build() {
     BuiltScene& built = context_.built;
     const Definition* definition = context_.only(Kind::camera, context_.options.camera);
@@ -77,12 +92,14 @@ void CameraBuilder::build() {
         bindInto(nullptr);
         return;
     }
-    const CameraContext camera = contextOf(*definition);
+    CameraContext camera = contextOf(*definition);
+    camera.pose = context_.options.cameraPose;
     auto placed = makerOf<MakeCamera>(*definition->type)(bindInto, camera, context_.diagnostics);
     if (!placed) return;
     built.scene.camera = std::move(placed->camera);
     built.scene.frame = {0, 0, camera.filmSize.x, camera.filmSize.y};
     built.scene.origin = placed->origin;
+    built.cameraPose = camera.pose.value_or(poseOf(*placed, context_.up()));
     built.cameraExposure = placed->exposure;
     built.exposure = placed->exposure.factor();
     const Shutter& shutter = placed->shutter;
