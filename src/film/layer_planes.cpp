@@ -33,7 +33,7 @@ class PlaneMaker {
         if (plan_.spectral) spectrum();
         mattes();
         fill();
-        roundParts();
+        if (view_.only.empty()) roundParts();
         return std::move(result_);
     }
 
@@ -47,11 +47,13 @@ class PlaneMaker {
 
     // Adds planes NAME.channel, which fill() fills.
     template <std::size_t N> void add(const std::string& name, const char* const (&channels)[N], Values values) {
+        if (!isWanted(name)) return;
         fillings_.push_back({result_.planes.size(), N, std::move(values)});
         for (const char* channel : channels)
             result_.planes.push_back(
                 {name.empty() ? channel : name + "." + channel, std::vector<float>(total_.size())});
     }
+    bool isWanted(const std::string& name) const { return view_.only.empty() || name == view_.only; }
     // All planes of a few pixels, then of the next ones: the sums of these pixels stay in the cache of a core until
     // they have gone into each plane.
     void fill() {
@@ -226,6 +228,7 @@ class PlaneMaker {
     void mattes() {
         using Matte = FilmLayers::Matte;
         const auto matte = [&](Matte m, const char* name) {
+            if (!isWanted(name)) return;
             for (NamedPlane& plane : cryptomattePlanes(layers_, m, name, total_, first_))
                 result_.planes.push_back(std::move(plane));
             for (auto& entry : cryptomatteHeader(layers_, m, name)) result_.header.push_back(std::move(entry));

@@ -16,9 +16,10 @@ namespace abbe {
 // How sums become numbers: as those of the picture.
 struct LayerView {
     const RgbSpace* space = nullptr;
-    Matrix3 fromXyz;  // of the picture: to the space, with the white balance
-    double scale = 1; // exposure
-    Vec3d origin;     // world position of the origin of render space
+    Matrix3 fromXyz;       // of the picture: to the space, with the white balance
+    double scale = 1;      // exposure
+    Vec3d origin;          // world position of the origin of render space
+    std::string only = {}; // the layer that is wanted, as its sums are; empty: all, rounded to add up
 };
 
 struct LayerPlanes {

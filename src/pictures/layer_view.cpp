@@ -169,7 +169,11 @@ std::optional<LayerPicture> layerPicture(const std::string& path, const ExrInfo&
                                          float gain) {
     const auto wanted = [&](std::string_view channel) { return channel == name || layerOf(channel) == name; };
     if (std::ranges::none_of(info.channels, wanted, &ExrInfo::Channel::name)) return std::nullopt;
-    return Layer(readExrChannels(path, wanted), name, gain).show(name);
+    return layerPicture(readExrChannels(path, wanted), name, gain);
+}
+
+std::optional<LayerPicture> layerPicture(const ExrPlanes& planes, std::string_view name, float gain) {
+    return Layer(planes, name, gain).show(name);
 }
 
 } // namespace abbe

@@ -21,5 +21,7 @@ struct LayerPicture {
 // Of a layer, or of one channel by its whole name. `gain` scales what is shown as grey. Requires channels of that name:
 // nothing if there are none. Throws IoError.
 std::optional<LayerPicture> layerPicture(const std::string& path, const ExrInfo&, std::string_view name, float gain);
+// The same of channels that are in memory.
+std::optional<LayerPicture> layerPicture(const ExrPlanes&, std::string_view name, float gain);
 
 } // namespace abbe
