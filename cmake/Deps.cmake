@@ -45,6 +45,7 @@ target_include_directories(dep::Draco SYSTEM INTERFACE ${DRACO_INCLUDE})
 target_link_libraries(dep::Draco INTERFACE ${draco_copy})
 dep_import(MeshOptimizer HEADER meshoptimizer.h LIBS meshoptimizer)
 dep_import(LibZip HEADER zip.h LIBS zip) # whose own package asks for programs of another one
+dep_import(HttpLib HEADER httplib.h LIBS cpp-httplib)
 dep_import(ZLib HEADER zlib.h LIBS z)
 dep_import(PugiXml HEADER pugixml.hpp LIBS pugixml)
 dep_import(Blosc HEADER blosc.h LIBS blosc)

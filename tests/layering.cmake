@@ -60,16 +60,17 @@ set(allowed_reports ${allowed_app} app pictures pages study verify)
 set(allowed_command_line ${allowed_app} app pictures)
 set(allowed_render_run ${allowed_reports} reports checkpoints)
 set(allowed_farm ${allowed_app} app checkpoints study)
-set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor)
+set(allowed_view ${allowed_reports} reports denoise)
+set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor view)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules guiding transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
-            packs ${exchange} app pictures pages checkpoints reports command_line render_run farm commands)
+            packs ${exchange} app pictures pages checkpoints reports command_line render_run farm view commands)
 
 # Libraries that only one folder may know, or two.
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "draco/=io" "meshoptimizer\\.h=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs|exchange/gltf_export" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
+    "CLI/=command_line" "httplib\\.h=view" "nlohmann/=app|farm|reports|io|packs|view|exchange/gltf_export" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
 
 set(faults 0)
 macro(fault text)

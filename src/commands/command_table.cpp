@@ -38,6 +38,7 @@ const CommandTable& commandTable() {
     // In the order of their list.
     static const CommandEntry commands[] = {
         {"render", kPictures, kRenderHelp, makeCommand<RenderOptions>},
+        {"view", kPictures, kViewHelp, makeCommand<ViewRequest>},
         {"merge", kPictures, kMergeHelp, makeCommand<MergeOptions>},
         {"farm", kPictures, kFarmHelp, nullptr, farmActions()},
         {"convert", kPictures, kConvertHelp, makeCommand<ConvertOptions>},

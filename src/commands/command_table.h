@@ -11,6 +11,7 @@
 #include "pictures/image_output.h"
 #include "render_run/render_options.h"
 #include "scene/build.h"
+#include "view/view_session.h"
 
 #include <cstdint>
 #include <optional>
@@ -54,6 +55,11 @@ struct ConvertOptions {
 extern const char* const kConvertHelp;
 void addArguments(Arguments&, ConvertOptions&);
 ExitCode run(const ConvertOptions&, const CommonOptions&);
+
+// `abbe view`: a page that shows a scene while it is being edited.
+extern const char* const kViewHelp;
+void addArguments(Arguments&, ViewRequest&);
+ExitCode run(const ViewRequest&, const CommonOptions&);
 
 // `abbe denoise`: a denoised layer for an image.
 struct DenoiseOptions {

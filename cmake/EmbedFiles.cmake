@@ -1,0 +1,23 @@
+# Run by the build: cmake -DOUTPUT=file.cpp -DFILES=a.html;b.js -P EmbedFiles.cmake
+# Puts the files of the page of `abbe view` into a source file, as raw text, in portions that any compiler takes.
+set(text "// Made by cmake/EmbedFiles.cmake from src/view/page.
+#include \"view/view_server.h\"\n\nnamespace abbe {\n\nnamespace {\n\nconst PageFile kPageFiles[] = {\n")
+foreach(file IN LISTS FILES)
+    get_filename_component(name ${file} NAME)
+    file(READ ${file} content)
+    string(FIND "${content}" ")page\"" found)
+    if(found GREATER_EQUAL 0)
+        message(FATAL_ERROR "${file} has the mark that ends raw text")
+    endif()
+    string(LENGTH "${content}" length)
+    string(APPEND text "    {\"${name}\",")
+    set(at 0)
+    while(at LESS length)
+        string(SUBSTRING "${content}" ${at} 8000 part)
+        string(APPEND text "\nR\"page(${part})page\"")
+        math(EXPR at "${at} + 8000")
+    endwhile()
+    string(APPEND text "},\n")
+endforeach()
+string(APPEND text "};\n\n} // namespace\n\nstd::span<const PageFile> viewPageFiles() { return kPageFiles; }\n\n} // namespace abbe\n")
+file(WRITE ${OUTPUT} "${text}")

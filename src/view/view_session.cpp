@@ -1,0 +1,48 @@
+#include "view/view_session.h"
+
+#include <chrono>
+
+namespace abbe {
+
+ViewSession::ViewSession(ViewRequest request)
+    : request_(std::move(request)), scene_(request_.input, request_.build), render_(scene_, [this] { changed(); }),
+      pictures_(render_, request_.view), watch_([this] { render_.reload(); }) {
+    render_.onLoad = [this](const LoadOutcome& outcome) { loaded(outcome); };
+    render_.start();
+}
+
+ViewSession::~ViewSession() = default;
+
+// After errors the files of the scene that is still shown count, too: it may have been one of them.
+void ViewSession::loaded(const LoadOutcome& outcome) {
+    auto files = outcome.files;
+    {
+        const std::lock_guard lock(mutex_);
+        if (outcome.shot)
+            known_ = outcome.files;
+        else
+            files.insert(files.end(), known_.begin(), known_.end());
+    }
+    watch_.follow(files, outcome.begun, outcome.folders);
+}
+
+void ViewSession::changed() {
+    {
+        const std::lock_guard lock(mutex_);
+        ++changes_;
+    }
+    changed_.notify_all();
+}
+
+std::uint64_t ViewSession::changes() const {
+    const std::lock_guard lock(mutex_);
+    return changes_;
+}
+
+std::uint64_t ViewSession::waitForChange(std::uint64_t seen, double seconds) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return changes_ != seen; });
+    return changes_;
+}
+
+} // namespace abbe

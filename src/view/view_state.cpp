@@ -1,0 +1,160 @@
+// What a page is told: docs/view.md lists the members.
+#include "view/camera_moves.h"
+#include "view/view_session.h"
+
+#include <array>
+#include <filesystem>
+
+namespace abbe {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Json numbers(Vec3d v) {
+    Json list = Json::list();
+    for (const double c : {v.x, v.y, v.z}) list.push(c);
+    return list;
+}
+
+Json texts(const std::vector<std::string>& words) {
+    Json list = Json::list();
+    for (const std::string& word : words) list.push(word);
+    return list;
+}
+
+const char* nameOf(LiveStatus status) {
+    static constexpr std::array kNames{"loading", "rendering", "paused", "done", "error"};
+    return kNames[static_cast<std::size_t>(status)];
+}
+
+// A place as it is told: without the folder that the scene is in.
+std::string shownPath(const std::string& path, const fs::path& folder) {
+    std::error_code error;
+    if (path.empty() || !fs::exists(path, error)) return path;
+    const fs::path below = fs::absolute(path, error).lexically_normal().lexically_relative(folder);
+    return below.empty() || *below.begin() == ".." ? path : below.string();
+}
+
+Json diagnosticsJson(const std::vector<ViewDiagnostic>& all, const fs::path& folder) {
+    Json list = Json::list();
+    for (const ViewDiagnostic& d : all)
+        list.push(Json::object({{"severity", d.severity},
+                                {"code", d.code},
+                                {"file", shownPath(d.file, folder)},
+                                {"line", d.line > 0 ? Json(d.line) : Json()},
+                                {"column", d.column > 0 ? Json(d.column) : Json()},
+                                {"message", d.message},
+                                {"label", d.label},
+                                {"help", d.help}}));
+    return list;
+}
+
+Json regionJson(const std::optional<PixelBounds>& r) {
+    if (!r) return {};
+    Json list = Json::list();
+    for (const int v : {r->x0, r->y0, r->x1, r->y1}) list.push(v);
+    return list;
+}
+
+Json known(double value, bool isKnown) { return isKnown ? Json(value) : Json(); }
+
+Json curveJson(const std::vector<CurvePoint>& curve) {
+    Json list = Json::list();
+    for (const CurvePoint& p : curve) {
+        Json point = Json::list();
+        for (const double v : {p.seconds, p.samples, p.noise}) point.push(v);
+        list.push(point);
+    }
+    return list;
+}
+
+Json reuseJson(const LiveReport& r) {
+    return Json::object({{"shapes_kept", 0},
+                         {"shapes_loaded", 0},
+                         {"shapes_placed", 0},
+                         {"structure", "built"},
+                         {"textures_kept", 0},
+                         {"textures_read", 0},
+                         {"seconds", Json::object({{"read", r.readSeconds},
+                                                   {"build", r.buildSeconds},
+                                                   {"commit", r.commitSeconds},
+                                                   {"first_pixels", known(r.firstPixels, r.firstPixels > 0)}})},
+                         {"kept", r.kept}});
+}
+
+Json denoisersJson() {
+    Json list = Json::list();
+    for (const DenoiseMethod method : {DenoiseMethod::nfor, DenoiseMethod::preview})
+        list.push(Json::object({{"name", std::string(name(method))}, {"version", std::string(version(method))}}));
+    return list;
+}
+
+} // namespace
+
+Json ViewSession::cameraState(const LiveReport& report) const {
+    const auto shot = render_.shot();
+    if (!shot) return {};
+    const schema::Header& header = shot->loaded->tree.header;
+    const Vec3d upright = header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+    const double unit = header.length;
+    return Json::object({{"name", shot->cameraName},
+                         {"type", shot->cameraType},
+                         {"movable", true},
+                         {"from", numbers(report.pose.from / unit)},
+                         {"look_at", numbers(report.pose.lookAt / unit)},
+                         {"up", numbers(report.pose.up)},
+                         {"moved", report.moved},
+                         {"lines", poseLines(report.pose, unit, upright)}});
+}
+
+Json ViewSession::sceneState() const {
+    const fs::path path(request_.input.path);
+    return Json::object({{"name", path.stem().string()}, {"path", request_.input.path}});
+}
+
+Json ViewSession::state() const {
+    const LiveReport r = render_.report();
+    const auto picture = render_.picture();
+    const auto shot = render_.shot();
+    Json groups = Json::list();
+    const GroupWeights weights = pictures_.weights();
+    for (const std::string& name : r.groups) {
+        const auto found = weights.find(name);
+        groups.push(Json::object({{"name", name}, {"weight", found == weights.end() ? 1.0 : found->second}}));
+    }
+    std::vector<std::string> layers{"beauty"};
+    layers.insert(layers.end(), r.layers.begin(), r.layers.end());
+    Json other;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!other_.empty()) other = Json::object({{"path", other_}});
+    }
+    return Json::object(
+        {{"scene", sceneState()},
+         {"status", nameOf(r.status)},
+         {"save", r.saves},
+         {"picture", Json::object({{"version", picture ? picture->version : 0},
+                                   {"cell", picture ? picture->cell : 1},
+                                   {"stale", r.stale}})},
+         {"frame", Json::object({{"width", r.width}, {"height", r.height}, {"region", regionJson(r.region)}})},
+         {"samples", Json::object({{"done", r.samples}, {"goal", r.goal}})},
+         {"noise", known(r.noise, r.noise > 0)},
+         {"curve", curveJson(r.curve)},
+         {"elapsed", r.elapsed},
+         {"left", known(r.left, r.left >= 0)},
+         {"camera", cameraState(r)},
+         {"layers", texts(layers)},
+         {"groups", groups},
+         {"views", texts(pictures_.views())},
+         {"view", pictures_.defaultView()},
+         {"exposure", shot ? Json(shot->built.cameraExposure.stops) : Json()},
+         {"denoisers", denoisersJson()},
+         {"denoiser_missing", Json()},
+         {"diagnostics", diagnosticsJson(r.diagnostics, scene_.folder())},
+         {"reuse", reuseJson(r)},
+         {"other", other},
+         {"saved", render_.saved() != nullptr}});
+}
+
+} // namespace abbe
