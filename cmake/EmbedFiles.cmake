@@ -1,5 +1,9 @@
 # Run by the build: cmake -DOUTPUT=file.cpp -DFILES=a.html;b.js -P EmbedFiles.cmake
 # Puts the files of the page of `abbe view` into a source file, as raw text, in portions that any compiler takes.
+if(NOT FILES)
+    file(WRITE ${OUTPUT} "#include \"view/view_server.h\"\n\nstd::span<const abbe::PageFile> abbe::viewPageFiles() { return {}; }\n")
+    return()
+endif()
 set(text "// Made by cmake/EmbedFiles.cmake from src/view/page.
 #include \"view/view_server.h\"\n\nnamespace abbe {\n\nnamespace {\n\nconst PageFile kPageFiles[] = {\n")
 foreach(file IN LISTS FILES)

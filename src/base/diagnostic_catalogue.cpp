@@ -289,6 +289,8 @@ constexpr CodeInfo kCodes[] = {
     // E07: materials and the library
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
+    {"E0780", "a live view cannot go on with a scene", "While `abbe view` read or built the scene something failed that has no place in it, such as a lack of memory. The last picture stays. The scene is read again when a file of it is saved."},
+    {"E0781", "no memory for a live picture", "The film of `abbe view` with its layers takes more memory than there is. A smaller `--size` or fewer layers in the scene's film take less."},
     {"W0730", "a colour used as a number", "A plain number is needed, such as a roughness, but a part of the texture is a coloured spectrum. Its value at 550 nm is used."},
     {"W0731", "an unfinished study is replaced", "An interrupted study has left its state beside the outputs, and `--resume` was not given. This study replaces it."},
     {"W0732", "no study to go on with", "`--resume` found nothing beside the outputs, so the study begins anew. What was saved is removed when a study is done."},

@@ -1,3 +1,4 @@
+#include "base/file.h"
 #include "base/process.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
@@ -5,6 +6,7 @@
 
 #include <chrono>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <thread>
 #include <unistd.h>
 
@@ -47,7 +49,12 @@ void openPage(const std::string& url) {
 
 } // namespace
 
+// What is missing from the beginning is a slip of the pen; what goes away later may come back.
 ExitCode run(const ViewRequest& asked, const CommonOptions& common) {
+    if (const std::string why = whyNotRegular(asked.input.path); !why.empty()) {
+        common.console.error(fmt::format("cannot read `{}`: {}", asked.input.path, why));
+        return ExitCode::system;
+    }
     ViewRequest request = asked;
     request.commandLine = common.commandLine;
     InterruptGuard interrupt;

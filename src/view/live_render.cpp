@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace abbe {
 
@@ -47,7 +48,9 @@ std::vector<std::string> layersOf(const PixelFilm& film) {
 
 LiveRender::LiveRender(LiveScene& scene, std::function<void()> changed) : scene_(scene), changed_(std::move(changed)) {}
 
-LiveRender::~LiveRender() {
+LiveRender::~LiveRender() { end(); }
+
+void LiveRender::end() {
     order([](Orders& o) { o.end = true; }, true);
     if (thread_.joinable()) thread_.join();
 }
@@ -231,6 +234,7 @@ void LiveRender::adopt(LoadOutcome& outcome) {
         outcome.shot->ownCamera = std::move(outcome.shot->built.scene.camera);
         const std::lock_guard atRest(resting_);
         film_.reset();
+        metered_ = false;
         const std::lock_guard lock(mutex_);
         if (!shot_ || shot_->cameraWords != outcome.shot->cameraWords) pose_.reset();
         shot_ = outcome.shot;
@@ -239,6 +243,7 @@ void LiveRender::adopt(LoadOutcome& outcome) {
     {
         const std::lock_guard lock(mutex_);
         report_.diagnostics = std::move(outcome.diagnostics);
+        report_.reuse = outcome.reuse;
         report_.readSeconds = outcome.readSeconds;
         report_.buildSeconds = outcome.buildSeconds;
         report_.commitSeconds = outcome.commitSeconds;
@@ -272,8 +277,20 @@ void LiveRender::begin() {
         report_.left = -1;
         report_.goal = goal_.value_or(shot_->settings.samples);
     }
+    moveCamera({});
+    meter(*shot_);
+    moveCamera(pose);
+    cell_ = firstCell(shot_->film.crop);
+    const std::lock_guard lock(mutex_);
+    report_.pose = shownPose_;
+    report_.moved = shownMoved_;
+    report_.stops = shot_->built.cameraExposure.stops;
+    report_.status = paused_ ? LiveStatus::paused : LiveStatus::rendering;
+}
+
+// To a place, or to where the scene has it.
+void LiveRender::moveCamera(const std::optional<CameraPose>& pose) {
     movedCamera_.reset();
-    cameraOffset_ = {};
     shownPose_ = shot_->built.cameraPose;
     if (pose) {
         BuildOptions options = scene_.options();
@@ -281,19 +298,13 @@ void LiveRender::begin() {
         Diagnostics ignored; // the scene was built without errors, and a pose is sound
         LoneCamera moved = buildCamera(shot_->loaded->tree, shot_->loaded->types, options, ignored);
         if (moved.camera) {
-            movedCamera_ = std::move(moved.camera);
-            cameraOffset_ = moved.origin - shot_->built.scene.origin;
+            movedCamera_ =
+                std::make_unique<MovedCamera>(std::move(moved.camera), moved.origin - shot_->built.scene.origin);
             shownPose_ = *pose;
         }
     }
     shownMoved_ = movedCamera_ != nullptr;
     placeCamera(1);
-    if (!pose) meter(*shot_);
-    cell_ = firstCell(shot_->film.crop);
-    const std::lock_guard lock(mutex_);
-    report_.pose = shownPose_;
-    report_.moved = shownMoved_;
-    report_.status = paused_ ? LiveStatus::paused : LiveStatus::rendering;
 }
 
 // A render goes on to another number of samples, if it was planned already.
@@ -308,18 +319,27 @@ void LiveRender::takeGoal() {
 void LiveRender::placeCamera(int cell) {
     Scene& scene = shot_->built.scene;
     const Camera& camera = movedCamera_ ? *movedCamera_ : *shot_->ownCamera;
-    scene.camera = std::make_unique<RoughCamera>(camera, cameraOffset_, cell);
+    scene.camera = std::make_unique<RoughCamera>(camera, cell);
     scene.frame = roughBounds({0, 0, shot_->film.width, shot_->film.height}, cell);
 }
 
-// `exposure auto`, as a render finds it.
-void LiveRender::meter(LiveShot& shot) const {
+// `exposure auto`, as a render finds it: by the scene's own camera, so that a picture that is looked around in keeps
+// its brightness.
+void LiveRender::meter(LiveShot& shot) {
     Exposure& exposure = shot.built.cameraExposure;
-    if (!exposure.automatic) return;
-    if (const auto stops =
-            meterExposure(shot.built.scene, *shot.integrator, shot.settings.maxDepth, exposure.sensitivity))
+    if (!exposure.automatic || std::exchange(metered_, true)) return;
+    const Scene& scene = shot.built.scene;
+    if (const auto stops = meterExposure(scene, *shot.integrator, shot.settings.maxDepth, exposure.sensitivity))
         exposure.stops = *stops;
     shot.built.exposure = exposure.factor();
+}
+
+// Throws MemoryLimitExceeded if a film and its pictures do not fit.
+void LiveRender::requireRoom(const PixelBounds& bounds, int replicates) const {
+    constexpr double kPictures = 4 * 3 * sizeof(float); // bytes of a pixel: shown, saved, in the making, of a page
+    requireMemory(static_cast<double>(PixelFilm::memoryBytes(bounds, replicates, true, true)) +
+                  static_cast<double>(FilmLayers::memoryBytes(bounds, shot_->layers)) +
+                  kPictures * shot_->film.width * shot_->film.height);
 }
 
 // As fine as can be seen soon, by what earlier pictures took.
@@ -355,6 +375,7 @@ void LiveRender::beginStage() {
         settings.technique.merging = Technique::Merging::off;
     }
     placeCamera(cell_);
+    requireRoom(bounds, replicates);
     Scene& scene = shot_->built.scene;
     PixelFilm film(bounds, PixelFilter(shot_->film.filter, shot_->film.filterRadius), replicates);
     film.keepSplatsOf(*shot_->integrator, scene, settings);
@@ -425,7 +446,11 @@ void LiveRender::stageEnded(const RenderStatistics& statistics) {
         return;
     }
     finished_ = true;
+    Diagnostics found; // of files that could not be read to their ends
+    for (const auto& texture : shot_->built.scene.textures) texture->reportLookups(found);
+    const auto told = viewDiagnostics(found, shot_->loaded->sources);
     const std::lock_guard lock(mutex_);
+    report_.diagnostics.insert(report_.diagnostics.end(), told.begin(), told.end());
     report_.status = LiveStatus::done;
     report_.left = 0;
 }

@@ -76,10 +76,11 @@ struct LiveReport {
     std::vector<CurvePoint> curve;
     CameraPose pose;
     bool moved = false;
+    double stops = 0;                                                             // exposure of the camera
     double readSeconds = 0, buildSeconds = 0, commitSeconds = 0, firstPixels = 0; // s; 0: not yet
     std::vector<std::string> layers; // of the film, as its image names them
     std::vector<std::string> groups; // of lights
-    std::string kept;                // what was not built again, for people
+    ReuseCounters reuse;             // of the last building
 };
 
 class LiveRender {
@@ -92,6 +93,8 @@ class LiveRender {
 
     // Reads the scene and begins.
     void start();
+    // For good. What is asked for from then on is not done.
+    void end();
 
     // From any thread; none waits for the render.
     void reload();
@@ -132,7 +135,9 @@ class LiveRender {
     void renderStage();
     void stageEnded(const RenderStatistics&);
     void placeCamera(int cell);
-    void meter(LiveShot&) const;
+    void meter(LiveShot&);
+    void requireRoom(const PixelBounds&, int replicates) const;
+    void moveCamera(const std::optional<CameraPose>&);
     void publish();
     std::shared_ptr<LivePicture> compose() const;
     void letIn();
@@ -165,10 +170,10 @@ class LiveRender {
 
     // Of the thread of the view; with `resting_`, of whoever has the film.
     std::unique_ptr<LiveFilm> film_;
-    std::unique_ptr<const Camera> movedCamera_;
-    Vec3d cameraOffset_; // of the camera's position from the origin of render space, m
+    std::unique_ptr<const Camera> movedCamera_; // null: the scene's own is where it was
     CameraPose shownPose_;
     bool shownMoved_ = false;
+    bool metered_ = false;       // the exposure of the shot
     int cell_ = 8;               // of the next stage
     bool finished_ = false;      // all stages
     double secondsOfPixel_ = 0;  // of a sample of a pixel, from the first stage that was measured; 0: unknown

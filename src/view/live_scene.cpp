@@ -24,22 +24,6 @@ constexpr double kMostForLayers = 2e9;   // bytes
 constexpr std::size_t kMostFolders = 64; // below the scene's, where a missing file is waited for
 constexpr std::size_t kMostTold = 500;   // diagnostics
 
-void tell(std::vector<ViewDiagnostic>& list, const Diagnostics& found, const SourceMap& sources) {
-    for (const Diagnostic* d : sortedByPlace(found)) {
-        if (list.size() >= kMostTold) return;
-        ViewDiagnostic told{
-            d->severity == Severity::error ? "error" : "warning", d->code, {}, 0, 0, d->message, d->label, d->help};
-        if (d->span.valid()) {
-            const LineColumn at = sources.lineColumn(d->span.file, d->span.begin);
-            told.file = sources.path(d->span.file);
-            told.line = at.line;
-            told.column = at.column;
-        }
-        for (const std::string& note : d->notes) told.help += (told.help.empty() ? "" : "\n") + note;
-        list.push_back(std::move(told));
-    }
-}
-
 // Of everything that was read, as far as reading came.
 void collectFiles(LoadOutcome& outcome, const LoadedScene& loaded, const BuiltScene* built) {
     std::set<fs::path> all;
@@ -87,6 +71,24 @@ const schema::Definition* definitionAt(const LoadedScene& loaded, Span span) {
 
 } // namespace
 
+std::vector<ViewDiagnostic> viewDiagnostics(const Diagnostics& found, const SourceMap& sources) {
+    std::vector<ViewDiagnostic> list;
+    for (const Diagnostic* d : sortedByPlace(found)) {
+        if (list.size() >= kMostTold) break;
+        ViewDiagnostic told{
+            d->severity == Severity::error ? "error" : "warning", d->code, {}, 0, 0, d->message, d->label, d->help};
+        if (d->span.valid()) {
+            const LineColumn at = sources.lineColumn(d->span.file, d->span.begin);
+            told.file = sources.path(d->span.file);
+            told.line = at.line;
+            told.column = at.column;
+        }
+        for (const std::string& note : d->notes) told.help += (told.help.empty() ? "" : "\n") + note;
+        list.push_back(std::move(told));
+    }
+    return list;
+}
+
 LayerPlan viewLayers(const LayerPlan& scene, const Scene& built, PixelBounds bounds, double most) {
     LayerPlan plan = scene;
     plan.deep.reset(); // which nobody sees, and which may take any amount of memory
@@ -115,7 +117,8 @@ void LiveScene::build(LoadOutcome& outcome, std::unique_ptr<LoadedScene>& loaded
     auto shot = std::make_shared<LiveShot>();
     Stopwatch watch;
     Diagnostics& diagnostics = loaded->diagnostics;
-    shot->built = buildScene(loaded->tree, loaded->types, options_, diagnostics);
+    shot->built = buildScene(loaded->tree, loaded->types, options_, diagnostics, &reuse_);
+    outcome.reuse = reuse_.counters();
     outcome.commitSeconds = shot->built.commitSeconds;
     if (!diagnostics.hasErrors())
         for (const FilmFault& fault : findFaults(shot->built.film))
@@ -137,7 +140,7 @@ void LiveScene::build(LoadOutcome& outcome, std::unique_ptr<LoadedScene>& loaded
             shot->cameraName = camera->name;
             shot->cameraType = camera->type ? camera->type->name : std::string();
         }
-        tell(outcome.diagnostics, diagnostics, loaded->sources);
+        outcome.diagnostics = viewDiagnostics(diagnostics, loaded->sources);
         shot->loaded = std::move(loaded);
         outcome.shot = std::move(shot);
     }
@@ -160,7 +163,7 @@ LoadOutcome LiveScene::load() {
             build(outcome, loaded);
         else
             collectFiles(outcome, *loaded, nullptr);
-        if (!outcome.shot) tell(outcome.diagnostics, loaded->diagnostics, loaded->sources);
+        if (!outcome.shot) outcome.diagnostics = viewDiagnostics(loaded->diagnostics, loaded->sources);
     } catch (const std::bad_alloc& e) {
         fail("E0780", fmt::format("out of memory: {}", memoryReason(e)), "the scene needs more than there is");
     } catch (const std::exception& e) {

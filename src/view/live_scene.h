@@ -6,6 +6,7 @@
 #include "film/layer_plan.h"
 #include "render/integrator.h"
 #include "scene/build.h"
+#include "scene/reuse.h"
 
 #include <chrono>
 #include <filesystem>
@@ -22,6 +23,9 @@ struct ViewDiagnostic {
     std::uint32_t line = 0, column = 0; // from 1, in characters; 0: none
     std::string message, label, help;
 };
+
+// By place, some hundreds at most.
+std::vector<ViewDiagnostic> viewDiagnostics(const Diagnostics&, const SourceMap&);
 
 // A scene as it was at one moment. Shared by all who look at it; only LiveRender changes its camera, frame and
 // exposure, between renders.
@@ -44,12 +48,15 @@ struct LoadOutcome {
     std::vector<std::filesystem::path> files;   // that were read, or looked for
     std::vector<std::filesystem::path> folders; // where a file may be missing, after errors
     std::chrono::system_clock::time_point begun;
+    ReuseCounters reuse;
     double readSeconds = 0, buildSeconds = 0, commitSeconds = 0; // of the clock
 };
 
 class LiveScene {
   public:
-    LiveScene(SceneInput input, BuildOptions options) : input_(std::move(input)), options_(std::move(options)) {}
+    LiveScene(SceneInput input, BuildOptions options) : input_(std::move(input)), options_(std::move(options)) {
+        reuse_.keepView(true); // a camera that is edited moves no geometry
+    }
 
     // Takes as long as reading and building do. Never throws: what is wrong is in the diagnostics, also a lack of
     // memory.
@@ -66,6 +73,7 @@ class LiveScene {
 
     SceneInput input_;
     BuildOptions options_;
+    SceneReuse reuse_;
 };
 
 // The most light groups that a view makes of the lights of a scene without groups.

@@ -11,7 +11,8 @@ ViewSession::ViewSession(ViewRequest request)
     render_.start();
 }
 
-ViewSession::~ViewSession() = default;
+// The render tells the watch which files to follow, and the watch the render that they changed.
+ViewSession::~ViewSession() { render_.end(); }
 
 // After errors the files of the scene that is still shown count, too: it may have been one of them.
 void ViewSession::loaded(const LoadOutcome& outcome) {

@@ -55,6 +55,8 @@ std::vector<ImageAttribute> ViewSession::snapshotHeader(const RestingFilm& resti
         list.push_back(
             {"abbe.viewCamera", poseLines(resting.pose, header.length, header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0})});
     }
+    // A camera that was edited stays in the space of the one before it: bits are not those of `abbe render` then.
+    if (report.reuse.viewKept) list.push_back({"abbe.viewKept", 1});
     return list;
 }
 

@@ -2,8 +2,11 @@
 #include "view/camera_moves.h"
 #include "view/view_session.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 
 namespace abbe {
 
@@ -50,6 +53,32 @@ Json diagnosticsJson(const std::vector<ViewDiagnostic>& all, const fs::path& fol
     return list;
 }
 
+// Of a film's edge at half its height, as the scene's own camera sees it.
+Ray edgeRay(const LiveShot& shot, double x) {
+    CameraSample sample;
+    sample.film = {static_cast<float>(x), static_cast<float>(shot.film.height) / 2};
+    sample.lens = {0.5f, 0.5f};
+    return shot.ownCamera->ray(sample).ray;
+}
+
+// The camera's lines for the file. What a parallel one shows changes with its distance; one of a glTF file has its
+// place there, so that another one has to take its own.
+std::string cameraLines(const LiveShot& shot, const CameraPose& pose, double unit, Vec3d upright) {
+    std::string lines = poseLines(pose, unit, upright);
+    const Ray left = edgeRay(shot, 0), right = edgeRay(shot, shot.film.width);
+    if (shot.cameraType == "orthographic" && pose.size != 1) {
+        const double width = length(Vec3d(right.origin) - Vec3d(left.origin)) * pose.size / unit;
+        const bool byHeight = shot.cameraWords.find("height") != std::string::npos;
+        lines += byHeight ? fmt::format("\nheight {:.7g}", width * shot.film.height / shot.film.width)
+                          : fmt::format("\nwidth {:.7g}", width);
+    }
+    if (shot.cameraType != "gltf") return lines;
+    const double chord = length(Vec3d(right.direction) - Vec3d(left.direction)); // of the angle between them
+    if (!(chord > 0)) return lines;
+    return fmt::format("// in place of the camera of the glTF file\ncamera {{\n{}\nfov {:.7g} deg\n}}", lines,
+                       2 * std::asin(std::min(1.0, chord / 2)) / kDegree);
+}
+
 Json regionJson(const std::optional<PixelBounds>& r) {
     if (!r) return {};
     Json list = Json::list();
@@ -69,18 +98,37 @@ Json curveJson(const std::vector<CurvePoint>& curve) {
     return list;
 }
 
+// For people: what the last building took over from the one before it.
+std::string keptText(const ReuseCounters& c) {
+    std::string text;
+    const auto add = [&](const char* what, std::size_t made, std::size_t kept) {
+        if (made == 0 && kept > 0) text += (text.empty() ? "" : ", ") + std::string(what);
+    };
+    add("geometry", c.structuresBuilt, c.structuresKept);
+    if (c.structuresBuilt > 0) add("shapes", c.shapesLoaded, c.shapesKept);
+    add("textures", c.texturesRead, c.texturesKept);
+    add("volumes", c.volumesRead, c.volumesKept);
+    add("tables", c.tablesMade, c.tablesKept);
+    return text;
+}
+
 Json reuseJson(const LiveReport& r) {
-    return Json::object({{"shapes_kept", 0},
-                         {"shapes_loaded", 0},
-                         {"shapes_placed", 0},
-                         {"structure", "built"},
-                         {"textures_kept", 0},
-                         {"textures_read", 0},
+    const ReuseCounters& c = r.reuse;
+    const char* const structure = c.structuresBuilt > 0 ? "built" : c.structuresKept > 0 ? "kept" : "none";
+    return Json::object({{"shapes_kept", std::uint64_t{c.shapesKept}},
+                         {"shapes_loaded", std::uint64_t{c.shapesLoaded}},
+                         {"shapes_placed", std::uint64_t{c.placesMade}},
+                         {"places_kept", std::uint64_t{c.placesKept}},
+                         {"structure", structure},
+                         {"textures_kept", std::uint64_t{c.texturesKept}},
+                         {"textures_read", std::uint64_t{c.texturesRead}},
+                         {"volumes_kept", std::uint64_t{c.volumesKept}},
+                         {"volumes_read", std::uint64_t{c.volumesRead}},
                          {"seconds", Json::object({{"read", r.readSeconds},
                                                    {"build", r.buildSeconds},
                                                    {"commit", r.commitSeconds},
                                                    {"first_pixels", known(r.firstPixels, r.firstPixels > 0)}})},
-                         {"kept", r.kept}});
+                         {"kept", keptText(c)}});
 }
 
 Json denoisersJson() {
@@ -105,7 +153,7 @@ Json ViewSession::cameraState(const LiveReport& report) const {
                          {"look_at", numbers(report.pose.lookAt / unit)},
                          {"up", numbers(report.pose.up)},
                          {"moved", report.moved},
-                         {"lines", poseLines(report.pose, unit, upright)}});
+                         {"lines", cameraLines(*shot, report.pose, unit, upright)}});
 }
 
 Json ViewSession::sceneState() const {
@@ -148,7 +196,7 @@ Json ViewSession::state() const {
          {"groups", groups},
          {"views", texts(pictures_.views())},
          {"view", pictures_.defaultView()},
-         {"exposure", shot ? Json(shot->built.cameraExposure.stops) : Json()},
+         {"exposure", shot ? Json(r.stops) : Json()},
          {"denoisers", denoisersJson()},
          {"denoiser_missing", Json()},
          {"diagnostics", diagnosticsJson(r.diagnostics, scene_.folder())},

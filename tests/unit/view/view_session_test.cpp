@@ -1,0 +1,257 @@
+// A view without its server: what is told and shown while its file is edited.
+#include "unit/io/temporary_folder.h"
+#include "view/view_session.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <fstream>
+#include <thread>
+
+namespace abbe {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+fs::path homeOf(const TemporaryFolder& folder) { return fs::path(folder / "x").parent_path(); }
+
+constexpr const char* kBall = R"(scene 1
+film { size 64 48 }
+render { samples 8 }
+camera { from 0 1 4; look-at 0 1 0; fov 40 deg }
+light key quad { points { - -1 3 -1; - 1 3 -1; - 1 3 1; - -1 3 1 }; luminance 2000 nits; two-sided on }
+light sky sky { luminance 100 nits }
+material red diffuse { reflectance 0.8 }
+shape ball sphere { center 0 1 0; radius 0.7; material red }
+shape floor plane { material diffuse { reflectance 0.4 } }
+)";
+
+// A scene in a folder of its own, and what is shown of it.
+class Viewed {
+  public:
+    explicit Viewed(const std::string& text) {
+        save(text);
+        ViewRequest request;
+        request.input.path = path().string();
+        session = std::make_unique<ViewSession>(request);
+    }
+    fs::path path() const { return homeOf(folder) / "ball.scene"; }
+    // As editors do.
+    void save(const std::string& text) const {
+        std::ofstream(homeOf(folder) / "ball.tmp") << text;
+        fs::rename(homeOf(folder) / "ball.tmp", path());
+    }
+    std::string state() const { return session->state().text(); }
+    bool has(const std::string& text) const { return state().find(text) != std::string::npos; }
+    // Waits some seconds for a text in the state.
+    bool comes(const std::string& text) const {
+        for (int i = 0; i < 2000; ++i) {
+            if (has(text)) return true;
+            std::this_thread::sleep_for(10ms);
+        }
+        MESSAGE(state());
+        return false;
+    }
+    // Mean of a component of the picture, 0 to 255.
+    double mean(std::size_t component, PictureQuery query = {}) const {
+        const auto shown = session->picture(query);
+        REQUIRE(shown);
+        double sum = 0;
+        for (std::size_t i = component; i < shown->rgba.size(); i += 4)
+            sum += static_cast<unsigned char>(shown->rgba[i]);
+        return sum / (static_cast<double>(shown->rgba.size()) / 4);
+    }
+
+    TemporaryFolder folder;
+    std::unique_ptr<ViewSession> session;
+};
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+TEST_CASE("a view shows its scene, and another picture after a save") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.has("\"save\":1,"));
+    CHECK(v.has("\"samples\":{\"done\":8,\"goal\":8}"));
+    const double before = v.mean(0);
+    CHECK(before > 5);
+    v.save(replaced(kBall, "reflectance 0.4", "reflectance 0.05"));
+    REQUIRE(v.comes("\"save\":2,"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.mean(0) < 0.95 * before);
+    CHECK(v.has("\"structure\":\"kept\"")); // only a material changed
+    CHECK(v.has("\"saved\":true"));
+    PictureQuery saved;
+    saved.source = PictureSource::saved;
+    CHECK(v.mean(0, saved) == doctest::Approx(before).epsilon(0.01));
+}
+
+TEST_CASE("faults are told with their places, the last good picture stays, and the next save mends it") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const double before = v.mean(1);
+    v.save(replaced(kBall, "radius 0.7", "radiu 0.7"));
+    REQUIRE(v.comes("\"status\":\"error\""));
+    CHECK(v.has("\"stale\":true"));
+    CHECK(v.has("\"file\":\"ball.scene\",\"line\":8"));
+    CHECK(v.has("did you mean `radius`?"));
+    CHECK(v.mean(1) == doctest::Approx(before));
+    v.save(""); // empty
+    REQUIRE(v.comes("\"save\":3,"));
+    REQUIRE(v.comes("\"status\":\"error\""));
+    v.save(std::string("\x7f"
+                       "ELF\0\1\2\3",
+                       8)); // no text
+    REQUIRE(v.comes("\"save\":4,"));
+    REQUIRE(v.comes("\"status\":\"error\""));
+    fs::remove(v.path());
+    REQUIRE(v.comes("\"save\":5,"));
+    REQUIRE(v.comes("\"status\":\"error\""));
+    fs::create_directory(v.path());
+    REQUIRE(v.comes("\"save\":6,"));
+    REQUIRE(v.comes("\"status\":\"error\""));
+    fs::remove(v.path());
+    v.save(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.has("\"diagnostics\":[]"));
+    CHECK(v.has("\"stale\":false"));
+}
+
+TEST_CASE("a scene that was cut off while it was written is told and then shown") {
+    const std::string whole = kBall;
+    Viewed v(whole.substr(0, whole.size() / 2));
+    REQUIRE(v.comes("\"status\":\"error\""));
+    CHECK(v.has("\"picture\":{\"version\":0,"));
+    CHECK_FALSE(v.session->picture({}).has_value());
+    v.save(whole);
+    REQUIRE(v.comes("\"status\":\"done\""));
+}
+
+TEST_CASE("light groups are weighed without a sample, and add up to the picture") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    REQUIRE(v.has("\"groups\":[{\"name\":\"key\",\"weight\":1.0},{\"name\":\"sky\",\"weight\":1.0}"));
+    const double all = v.mean(0);
+    v.session->order("groups", R"({"weights":{"key":0}})");
+    const double sky = v.mean(0);
+    v.session->order("groups", R"({"weights":{"key":0,"sky":0}})");
+    CHECK(v.mean(0) < 0.5);
+    CHECK(sky < 0.9 * all);
+    v.session->order("groups", R"({"weights":{"key":1,"sky":1}})");
+    CHECK(v.mean(0) == doctest::Approx(all));
+    CHECK(v.has("\"samples\":{\"done\":8,\"goal\":8}"));
+    CHECK_THROWS_AS(v.session->order("groups", R"({"weights":{"keys":2}})"), ViewFault);
+}
+
+TEST_CASE("the camera moves, says its lines, and comes back") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const double before = v.mean(0);
+    v.session->order("camera", R"({"dolly":0.5})");
+    REQUIRE(v.comes("\"moved\":true"));
+    REQUIRE(v.comes(R"("lines":"from 0 1 2\nlook-at 0 1 0")"));
+    std::this_thread::sleep_for(100ms);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const double near = v.mean(0);
+    CHECK(std::abs(near - before) > 1);
+    // The lines in the file are the same picture.
+    v.save(replaced(kBall, "from 0 1 4", "from 0 1 2"));
+    REQUIRE(v.comes("\"save\":2,"));
+    REQUIRE(v.comes("\"moved\":false"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.mean(0) == doctest::Approx(near).epsilon(0.02));
+    v.session->order("camera", R"({"orbit":[0.5,0.2]})");
+    REQUIRE(v.comes("\"moved\":true"));
+    v.save(replaced(replaced(kBall, "from 0 1 4", "from 0 1 2"), "reflectance 0.8", "reflectance 0.3"));
+    REQUIRE(v.comes("\"save\":3,"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.has("\"moved\":true")); // another material moves no camera
+    v.session->order("camera", R"({"reset":true})");
+    REQUIRE(v.comes("\"moved\":false"));
+}
+
+TEST_CASE("a probe tells value, error, names and a spectrum") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const std::string told = v.session->probe({32, 24, true}).text();
+    CHECK(told.find("\"samples\":8") != std::string::npos);
+    CHECK(told.find("\"object\":\"ball\"") != std::string::npos);
+    CHECK(told.find("\"material\":\"red\"") != std::string::npos);
+    CHECK(told.find("\"depth\":3.3") != std::string::npos);
+    CHECK(told.find("\"unit\":\"cd/m²\"") != std::string::npos);
+    CHECK(told.find("\"spectrum\":[[385.0,") != std::string::npos);
+    CHECK(v.session->probe({32, 24, false}).text().find("\"spectrum\":null") != std::string::npos);
+    CHECK_THROWS_AS(v.session->probe({64, 24, false}), ViewFault);
+    CHECK_THROWS_AS(v.session->probe({-1, 0, false}), ViewFault);
+}
+
+TEST_CASE("a snapshot is an image with its provenance, and replaces nothing") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.session->order("snapshot", "{}").text() == R"({"files":["ball.view-0001.exr","ball.view-0001.png"]})");
+    CHECK(v.session->order("snapshot", "{}").text() == R"({"files":["ball.view-0002.exr","ball.view-0002.png"]})");
+    CHECK(fs::file_size(homeOf(v.folder) / "ball.view-0001.exr") > 1000);
+    v.session->order("other", R"({"path":"ball.view-0001.exr"})");
+    PictureQuery other;
+    other.source = PictureSource::other;
+    CHECK(v.mean(0, other) == doctest::Approx(v.mean(0)).epsilon(0.001));
+    for (const char* path : {"../ball.view-0001.exr", "/etc/passwd", "nothing.exr", "."})
+        CHECK_THROWS_AS(v.session->order("other", std::string(R"({"path":")") + path + "\"}"), ViewFault);
+    fs::create_symlink("/etc/passwd", homeOf(v.folder) / "link.exr");
+    CHECK_THROWS_AS(v.session->order("other", R"({"path":"link.exr"})"), ViewFault);
+}
+
+TEST_CASE("regions, pauses and goals") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    v.session->order("region", R"({"x0":10,"y0":10,"x1":30,"y1":20})");
+    REQUIRE(v.comes("\"region\":[10,10,30,20]"));
+    v.session->order("region", "{}");
+    REQUIRE(v.comes("\"region\":null"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    v.session->order("control", R"({"samples":16})");
+    REQUIRE(v.comes("\"samples\":{\"done\":16,\"goal\":16}"));
+    v.session->order("control", R"({"samples":100000000})");
+    REQUIRE(v.comes("\"status\":\"rendering\""));
+    v.session->order("control", R"({"pause":true})");
+    REQUIRE(v.comes("\"status\":\"paused\""));
+    v.session->order("control", R"({"pause":false})");
+    REQUIRE(v.comes("\"status\":\"rendering\""));
+    CHECK(v.session->probe({1, 1, false}).text().find("\"samples\"") != std::string::npos); // while it goes on
+}
+
+TEST_CASE("orders that are none are refused") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const std::pair<const char*, const char*> bad[] = {
+        {"camera", "{"},
+        {"camera", "[]"},
+        {"camera", R"({"orbit":[1]})"},
+        {"camera", R"({"orbit":[1,"2"]})"},
+        {"camera", R"({"orbit":[1e300,0]})"},
+        {"camera", R"({"dolly":0})"},
+        {"camera", R"({"dolly":-1})"},
+        {"camera", R"({"spin":1})"},
+        {"region", R"({"x0":1})"},
+        {"region", R"({"x0":5,"y0":0,"x1":5,"y1":9})"},
+        {"region", R"({"x0":0,"y0":0,"x1":999,"y1":9})"},
+        {"groups", R"({"weights":{"key":-1}})"},
+        {"groups", R"({"weights":[1]})"},
+        {"control", R"({"samples":0})"},
+        {"control", R"({"pause":1})"},
+        {"other", R"({"path":1})"},
+        {"snapshot", R"({"path":"/etc/passwd"})"},
+    };
+    for (const auto& [name, body] : bad) {
+        CAPTURE(body);
+        CHECK_THROWS_AS(v.session->order(name, body), ViewFault);
+    }
+    CHECK(v.has("\"moved\":false"));
+}
+
+} // namespace
+} // namespace abbe
