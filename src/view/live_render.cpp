@@ -51,8 +51,9 @@ LiveRender::LiveRender(LiveScene& scene, std::function<void()> changed) : scene_
 LiveRender::~LiveRender() { end(); }
 
 void LiveRender::end() {
+    if (!thread_.joinable()) return;
     order([](Orders& o) { o.end = true; }, true);
-    if (thread_.joinable()) thread_.join();
+    thread_.join();
 }
 
 // `atOnce`: the render in hand ends; else it may show its first picture before it makes way.
@@ -60,6 +61,8 @@ void LiveRender::order(const std::function<void(Orders&)>& change, bool atOnce) 
     {
         const std::lock_guard lock(mutex_);
         change(orders_);
+        const bool more = orders_.restart || orders_.goal;
+        if (more && report_.status == LiveStatus::done) report_.status = LiveStatus::rendering;
         if (rendering_ && (atOnce || shown_)) stop_ = true;
     }
     awake_.notify_all();
@@ -187,8 +190,9 @@ void LiveRender::letIn() {
 bool LiveRender::next(Orders& orders) {
     std::unique_lock lock(mutex_);
     rendering_ = false;
-    const auto idle = [&] { return !shot_ || paused_ || finished_; };
-    awake_.wait(lock, [&] { return orders_.end || orders_.reload || orders_.restart || !idle(); });
+    const auto idle = [&] { return !shot_ || finished_ || (paused_ && isLastStage()); };
+    const auto asked = [&] { return orders_.end || orders_.reload || orders_.restart || orders_.goal; };
+    awake_.wait(lock, [&] { return asked() || !idle(); });
     orders = std::exchange(orders_, Orders{false, false, false, false});
     stop_ = false;
     rendering_ = true;
@@ -200,18 +204,37 @@ void LiveRender::run() {
     clock_.emplace(threadCount());
     Orders orders;
     while (next(orders)) {
-        if (orders.reload) load();
-        {
-            const std::lock_guard lock(mutex_);
-            if (!shot_) continue;
+        try {
+            follow(orders);
+        } catch (const std::bad_alloc& e) {
+            fail("E0781", "out of memory for this picture: " + memoryReason(e),
+                 "a smaller `--size`, or fewer layers, takes less");
+        } catch (const std::exception& e) {
+            fail("E0780", e.what(), {});
         }
-        if (orders.restart && !orders.reload) {
-            begun_.lap();
-            begin();
-        }
-        if (orders.goal) takeGoal();
-        if (!finished_) renderStage();
     }
+}
+
+void LiveRender::follow(const Orders& orders) {
+    if (orders.reload) load();
+    if (!shot()) return;
+    if (orders.restart && !orders.reload) {
+        begun_.lap();
+        begin();
+    }
+    if (orders.goal) takeGoal();
+    if (!finished_) renderStage();
+}
+
+// Nothing more is tried until something changes.
+void LiveRender::fail(const char* code, std::string message, std::string help) {
+    finished_ = true;
+    {
+        const std::lock_guard lock(mutex_);
+        report_.status = LiveStatus::error;
+        report_.diagnostics.push_back({"error", code, {}, 0, 0, std::move(message), {}, std::move(help)});
+    }
+    changed_();
 }
 
 void LiveRender::load() {
@@ -282,8 +305,8 @@ void LiveRender::begin() {
     moveCamera(pose);
     cell_ = firstCell(shot_->film.crop);
     const std::lock_guard lock(mutex_);
-    report_.pose = shownPose_;
-    report_.moved = shownMoved_;
+    report_.pose = pose_.value_or(shot_->built.cameraPose); // it may have been moved on meanwhile
+    report_.moved = pose_.has_value();
     report_.stops = shot_->built.cameraExposure.stops;
     report_.status = paused_ ? LiveStatus::paused : LiveStatus::rendering;
 }
@@ -396,8 +419,8 @@ void LiveRender::beginStage() {
 void LiveRender::renderStage() {
     {
         const std::lock_guard lock(mutex_);
-        if (paused_) return;
-        report_.status = LiveStatus::rendering;
+        if (paused_ && isLastStage()) return; // a rough picture is there at once, also of a view that pauses
+        if (!paused_) report_.status = LiveStatus::rendering;
     }
     resting_.lock();
     run_.lap();
@@ -414,18 +437,9 @@ void LiveRender::renderStage() {
         const RenderStatistics statistics =
             shot_->integrator->render(shot_->built.scene, film_->film, film_->settings, control);
         stageEnded(statistics);
-    } catch (const std::bad_alloc& e) {
-        finished_ = true;
-        const std::lock_guard lock(mutex_);
-        report_.status = LiveStatus::error;
-        report_.diagnostics.push_back({"error",
-                                       "E0781",
-                                       {},
-                                       0,
-                                       0,
-                                       "out of memory for this picture: " + memoryReason(e),
-                                       {},
-                                       "a smaller `--size`, or fewer layers, takes less"});
+    } catch (...) {
+        resting_.unlock();
+        throw;
     }
     earlier_ = now();
     resting_.unlock();
@@ -488,12 +502,16 @@ void LiveRender::progress(const Progress& p) {
 // No thread may be at work on the film.
 void LiveRender::publish() {
     const Stopwatch watch;
-    auto picture = compose();
+    const auto picture = compose();
+    picture->version = ++versions_;
+    if (onPublish) {
+        RestingFilm resting{*shot_, *film_, shownPose_, shownMoved_};
+        onPublish(resting, picture);
+    }
     const double seconds = now();
     nextPublication_ = seconds + std::max({kOften, seconds / 20, watch.seconds() / kShareOfPublishing});
     {
         const std::lock_guard lock(mutex_);
-        picture->version = ++versions_;
         picture_ = picture;
         report_.elapsed = seconds;
         if (!shown_) report_.firstPixels = begun_.seconds();

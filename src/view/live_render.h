@@ -114,6 +114,8 @@ class LiveRender {
     // none yet, or if it does not come to rest for some seconds, as while pilots are at work.
     bool whileResting(const std::function<void(RestingFilm&)>&);
 
+    // Called with each picture before anybody gets it, by the thread of the view, while its film rests.
+    std::function<void(RestingFilm&, const std::shared_ptr<const LivePicture>&)> onPublish;
     // Called from the thread of the view when a scene was read: the files to be followed from now on.
     std::function<void(const LoadOutcome&)> onLoad;
     // Of all threads so far. Requires a film, which rests.
@@ -127,6 +129,8 @@ class LiveRender {
     void run();
     bool next(Orders&); // false: it is to end
     void order(const std::function<void(Orders&)>&, bool atOnce);
+    void follow(const Orders&);
+    void fail(const char* code, std::string message, std::string help);
     void load();
     void adopt(LoadOutcome&);
     void begin();
@@ -144,6 +148,7 @@ class LiveRender {
     void progress(const Progress&);
     void passEnded();
     int firstCell(const PixelBounds&) const;
+    bool isLastStage() const { return (film_ ? film_->cell : cell_) == 1; }
     double now() const { return earlier_ + run_.seconds(); } // s of rendering this picture
 
     LiveScene& scene_;

@@ -1,6 +1,8 @@
 // What a page asks the view to do.
 #include "schema/suggest.h"
 #include "view/camera_moves.h"
+#include "view/live_render.h"
+#include "view/view_pictures.h"
 #include "view/view_session.h"
 
 #include <algorithm>

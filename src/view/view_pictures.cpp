@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMostMade = 4; // pictures beside the one that is shown
 constexpr double kMostStops = 60;
+constexpr double kInterest = 5; // s after a layer was asked for last, in which it is made of each picture
 
 Matrix3 toSpace(const FilmSettings& settings) { return rgbSpace(settings.space).fromXyz() * settings.whiteBalance; }
 
@@ -31,7 +32,7 @@ std::shared_ptr<LivePicture> painted(const LivePicture& under, const LiveFilm& f
     if (!keep) std::ranges::fill(picture->rgb, 0.f);
     const PixelBounds b = f.film.bounds();
     const int step = under.cell == f.cell ? 1 : f.cell; // of pixels of the data: a film's cells may be finer or coarser
-    if (under.cell != f.cell && under.cell != 1) return picture; // another film has just begun
+    if (under.cell != f.cell && under.cell != 1) return nullptr; // another film has just begun
     parallelFor(static_cast<std::size_t>(picture->height), [&](std::size_t row) {
         const int y = static_cast<int>(row) / step;
         if (y < b.y0 || y >= b.y1) return;
@@ -91,6 +92,49 @@ class WeighedGroups {
     std::vector<double> weights_;
     std::array<double, kSplatKinds> splats_{};
 };
+
+// Null where the film is not that of the picture any more, or keeps no groups.
+std::shared_ptr<const LivePicture> weighedPictureOf(const RestingFilm& resting, const LivePicture& live,
+                                                    const GroupWeights& weights) {
+    const FilmLayers* const layers = resting.film.film.layers();
+    if (!layers || layers->plan().groupCount() == 0) return nullptr;
+    return painted(live, resting.film, true, WeighedGroups(resting, weights));
+}
+
+// Whether a layer is light, which a view shows; else its numbers are made visible (pictures/layer_view.h).
+bool isColours(std::string_view layer) {
+    constexpr std::string_view kNumbers[] = {"normal",  "position", "forward", "uv",     "depth",
+                                             "samples", "seconds",  "invalid", "object", "material"};
+    return std::ranges::find(kNumbers, layer) == std::end(kNumbers) && !layer.starts_with("Crypto");
+}
+
+std::string layerKey(const std::string& name, double exposure) {
+    return isColours(name) ? "layer " + name : fmt::format("layer {} {}", name, exposure);
+}
+
+// Likewise of a layer.
+std::shared_ptr<const LivePicture> layerPictureOf(const RestingFilm& resting, const LivePicture& live,
+                                                  const std::string& name, double exposure) {
+    const PixelFilm& film = resting.film.film;
+    if (!film.layers()) return nullptr;
+    ResolvedImage image;
+    image.bounds = film.bounds();
+    const LayerView view{&rgbSpace(resting.shot.film.space), toSpace(resting.shot.film), resting.shot.built.exposure,
+                         resting.shot.built.scene.origin, name};
+    ExrPlanes planes;
+    for (NamedPlane& plane : layerPlanes(film, image, view).planes) {
+        planes.info.channels.push_back({plane.name, "float", 0});
+        planes.values.push_back(std::move(plane.values));
+    }
+    const auto shown = layerPicture(planes, name, static_cast<float>(std::exp2(exposure)));
+    if (!shown) return nullptr;
+    const PixelBounds b = film.bounds();
+    return painted(live, resting.film, false, [&](int x, int y) {
+        const float* v = &shown->rgb[3 * (static_cast<std::size_t>(y - b.y0) * static_cast<std::size_t>(b.width()) +
+                                          static_cast<std::size_t>(x - b.x0))];
+        return std::array<float, 3>{v[0], v[1], v[2]};
+    });
+}
 
 // Planes of a film's bounds that denoising takes, as they were at one moment.
 struct DenoisePlanes {
@@ -191,6 +235,7 @@ std::vector<char> bytesOf(const LivePicture& picture, const DisplayView* view) {
 } // namespace
 
 ViewPictures::ViewPictures(LiveRender& render, ViewOptions view) : render_(render), options_(std::move(view)) {
+    render_.onPublish = [this](RestingFilm& resting, const Picture& live) { published(resting, live); };
     const DisplayView first(OutputSpace::aces2065_1, options_);
     defaultView_ = first.view().view();
     const char* variable = std::getenv("OCIO");
@@ -268,22 +313,58 @@ std::shared_ptr<const DisplayView> ViewPictures::viewFor(OutputSpace space, cons
     }
 }
 
-// Of one version of the picture at a time.
+// Of one version of the picture at a time. What cannot be made of it, since the film has gone on to other cells, is as
+// it was last, or else the picture itself.
 template <typename Make>
-ViewPictures::Picture ViewPictures::cached(const std::string& key, std::uint64_t version, const Make& make) {
+ViewPictures::Picture ViewPictures::cached(const std::string& key, const Picture& live, const Make& make) {
     {
         const std::lock_guard lock(mutex_);
-        if (madeOf_ != version) made_.clear();
-        madeOf_ = version;
+        takeVersion(live->version);
         if (const auto found = made_.find(key); found != made_.end()) return found->second;
     }
     Picture picture = make();
     const std::lock_guard lock(mutex_);
-    if (madeOf_ == version) {
-        if (made_.size() >= kMostMade) made_.erase(made_.begin());
-        made_[key] = picture;
+    if (!picture) {
+        const auto older = older_.find(key);
+        return older == older_.end() ? live : older->second;
     }
+    if (madeOf_ == live->version) store(key, picture);
     return picture;
+}
+
+void ViewPictures::takeVersion(std::uint64_t version) {
+    if (version <= madeOf_) return; // who asks for an older picture may have a newer one
+    for (auto& [key, picture] : made_) older_[key] = std::move(picture);
+    while (older_.size() > kMostMade) older_.erase(older_.begin());
+    made_.clear();
+    madeOf_ = version;
+}
+
+void ViewPictures::store(const std::string& key, const Picture& picture) {
+    if (made_.size() >= kMostMade) made_.erase(made_.begin());
+    made_[key] = picture;
+}
+
+// What pages look at is made while the film rests anyway, and is as old as the picture.
+void ViewPictures::published(RestingFilm& resting, const Picture& live) {
+    std::string name;
+    double exposure = 0;
+    GroupWeights weights;
+    std::uint64_t weighing = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        takeVersion(live->version);
+        if (askedFor_.seconds() < kInterest) name = askedLayer_;
+        exposure = askedExposure_;
+        weights = weights_;
+        weighing = weighings_;
+    }
+    Picture layer, sum;
+    if (!name.empty()) layer = layerPictureOf(resting, *live, name, exposure);
+    if (name.empty() && !weights.empty()) sum = weighedPictureOf(resting, *live, weights);
+    const std::lock_guard lock(mutex_);
+    if (layer) store(layerKey(name, exposure), layer);
+    if (sum) store(fmt::format("weights {}", weighing), sum);
 }
 
 ViewPictures::Picture ViewPictures::weighed(const Picture& live, const GroupWeights& weights) {
@@ -292,12 +373,9 @@ ViewPictures::Picture ViewPictures::weighed(const Picture& live, const GroupWeig
         const std::lock_guard lock(mutex_);
         weighing = weighings_;
     }
-    return cached(fmt::format("weights {}", weighing), live->version, [&] {
-        Picture made = live;
-        render_.whileResting([&](RestingFilm& resting) {
-            if (!resting.film.film.layers() || resting.film.film.layers()->plan().groupCount() == 0) return;
-            made = painted(*live, resting.film, true, WeighedGroups(resting, weights));
-        });
+    return cached(fmt::format("weights {}", weighing), live, [&] {
+        Picture made;
+        render_.whileResting([&](RestingFilm& resting) { made = weighedPictureOf(resting, *live, weights); });
         return made;
     });
 }
@@ -307,42 +385,23 @@ ViewPictures::Shown ViewPictures::layer(const Picture& live, const std::string& 
     if (std::ranges::find(layers, name) == layers.end())
         throw ViewFault(fmt::format("there is no layer `{}`", name),
                         "the film of the scene keeps others: `layers { … }`");
-    const bool colours = !(name == "normal" || name == "position" || name == "forward" || name == "uv" ||
-                           name == "depth" || name == "samples" || name == "seconds" || name == "invalid" ||
-                           name == "object" || name == "material" || name.starts_with("Crypto"));
-    const std::string key = colours ? "layer " + name : fmt::format("layer {} {}", name, exposure);
-    Picture picture = cached(key, live->version, [&] {
-        Picture made = live;
-        render_.whileResting([&](RestingFilm& resting) {
-            const PixelFilm& film = resting.film.film;
-            if (!film.layers()) return;
-            ResolvedImage image;
-            image.bounds = film.bounds();
-            const LayerView view{&rgbSpace(resting.shot.film.space), toSpace(resting.shot.film),
-                                 resting.shot.built.exposure, resting.shot.built.scene.origin, name};
-            ExrPlanes planes;
-            for (NamedPlane& plane : layerPlanes(film, image, view).planes) {
-                planes.info.channels.push_back({plane.name, "float", 0});
-                planes.values.push_back(std::move(plane.values));
-            }
-            const auto shown = layerPicture(planes, name, static_cast<float>(std::exp2(exposure)));
-            if (!shown) return;
-            const PixelBounds b = film.bounds();
-            made = painted(*live, resting.film, false, [&](int x, int y) {
-                const float* v =
-                    &shown->rgb[3 * (static_cast<std::size_t>(y - b.y0) * static_cast<std::size_t>(b.width()) +
-                                     static_cast<std::size_t>(x - b.x0))];
-                return std::array<float, 3>{v[0], v[1], v[2]};
-            });
-        });
+    {
+        const std::lock_guard lock(mutex_);
+        askedLayer_ = name;
+        askedExposure_ = exposure;
+        askedFor_.lap();
+    }
+    Picture picture = cached(layerKey(name, exposure), live, [&] {
+        Picture made;
+        render_.whileResting([&](RestingFilm& resting) { made = layerPictureOf(resting, *live, name, exposure); });
         return made;
     });
-    return {picture, colours};
+    return {picture, isColours(name)};
 }
 
 // A rough picture is denoised as it is: it is gone before anybody looks closely.
 ViewPictures::Picture ViewPictures::denoised(const Picture& live, DenoiseMethod method) {
-    return cached(fmt::format("denoised {}", name(method)), live->version, [&] {
+    return cached(fmt::format("denoised {}", name(method)), live, [&] {
         const std::lock_guard one(denoising_);
         std::optional<DenoisePlanes> planes;
         render_.whileResting([&](RestingFilm& resting) {
@@ -350,7 +409,12 @@ ViewPictures::Picture ViewPictures::denoised(const Picture& live, DenoiseMethod 
                 planes = denoisePlanes(resting);
         });
         if (!planes) return live;
-        const DenoiseResult result = denoise(planes->input(), method);
+        DenoiseResult result;
+        try {
+            result = denoise(planes->input(), method);
+        } catch (const std::runtime_error& e) { // a denoiser that is not there, or failed
+            throw ViewFault(e.what());
+        }
         const PixelBounds b = planes->bounds;
         auto made = std::make_shared<LivePicture>(*live);
         for (int y = b.y0; y < std::min(b.y1, made->height); ++y)

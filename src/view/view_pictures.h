@@ -23,6 +23,9 @@ struct ViewFault : std::runtime_error {
     std::string help;
 };
 
+// That a page can choose from, the best one first.
+inline constexpr DenoiseMethod kViewDenoisers[] = {DenoiseMethod::nfor, DenoiseMethod::preview};
+
 enum class PictureSource : std::uint8_t { live, saved, other };
 
 struct PictureQuery {
@@ -74,7 +77,10 @@ class ViewPictures {
     Picture weighed(const Picture& live, const GroupWeights&);
     Picture denoised(const Picture& live, DenoiseMethod);
     std::shared_ptr<const DisplayView> viewFor(OutputSpace, const std::string& view);
-    template <typename Make> Picture cached(const std::string& key, std::uint64_t version, const Make& make);
+    template <typename Make> Picture cached(const std::string& key, const Picture& live, const Make& make);
+    void takeVersion(std::uint64_t);
+    void store(const std::string& key, const Picture&);
+    void published(RestingFilm&, const Picture& live);
 
     LiveRender& render_;
     ViewOptions options_;
@@ -86,9 +92,12 @@ class ViewPictures {
     std::uint64_t weighings_ = 0;
     Picture other_;
     std::map<std::pair<int, std::string>, std::shared_ptr<const DisplayView>> displays_;
-    std::map<std::string, Picture> made_; // what was made of the present picture, a few of them
-    std::uint64_t madeOf_ = 0;            // its version
-    std::mutex denoising_;                // which takes all there is of memory and cores
+    std::map<std::string, Picture> made_, older_; // what was made of the present picture, and of those before it
+    std::uint64_t madeOf_ = 0;                    // its version
+    std::string askedLayer_;                      // last
+    double askedExposure_ = 0;
+    Stopwatch askedFor_;
+    std::mutex denoising_; // which takes all there is of memory and cores
 };
 
 } // namespace abbe

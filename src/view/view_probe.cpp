@@ -3,6 +3,7 @@
 #include "film/layer_planes.h"
 #include "spectrum/sensor.h"
 #include "spectrum/xyz.h"
+#include "view/live_render.h"
 #include "view/view_session.h"
 
 #include <algorithm>

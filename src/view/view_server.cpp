@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "io/file.h"
+#include "view/view_pictures.h"
 
 #include <array>
 #include <charconv>
@@ -96,7 +97,7 @@ PictureQuery pictureQuery(const httplib::Request& request) {
     query.most = std::max(0, parameter(request, "max", 0));
     const std::string method = request.get_param_value("denoise");
     if (method.empty() || method == "0") return query;
-    for (const DenoiseMethod m : {DenoiseMethod::nfor, DenoiseMethod::preview})
+    for (const DenoiseMethod m : kViewDenoisers)
         if (name(m) == method) query.denoise = m;
     if (!query.denoise) throw ViewFault(fmt::format("there is no denoiser `{}`", method));
     return query;

@@ -1,5 +1,7 @@
 #include "view/view_session.h"
 
+#include "view/live_scene.h"
+
 #include <chrono>
 
 namespace abbe {

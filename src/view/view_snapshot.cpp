@@ -8,6 +8,7 @@
 #include "reports/render_text.h"
 #include "study/cost.h"
 #include "view/camera_moves.h"
+#include "view/live_render.h"
 #include "view/view_session.h"
 
 #include <filesystem>

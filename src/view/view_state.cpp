@@ -1,5 +1,7 @@
 // What a page is told: docs/view.md lists the members.
 #include "view/camera_moves.h"
+#include "view/live_render.h"
+#include "view/live_scene.h"
 #include "view/view_session.h"
 
 #include <algorithm>
@@ -131,10 +133,16 @@ Json reuseJson(const LiveReport& r) {
                          {"kept", keptText(c)}});
 }
 
-Json denoisersJson() {
+// Those that can be used; `missing` says why others cannot.
+Json denoisersJson(std::string& missing) {
     Json list = Json::list();
-    for (const DenoiseMethod method : {DenoiseMethod::nfor, DenoiseMethod::preview})
-        list.push(Json::object({{"name", std::string(name(method))}, {"version", std::string(version(method))}}));
+    for (const DenoiseMethod method : kViewDenoisers) {
+        try {
+            list.push(Json::object({{"name", std::string(name(method))}, {"version", std::string(version(method))}}));
+        } catch (const std::runtime_error& e) {
+            missing = e.what();
+        }
+    }
     return list;
 }
 
@@ -173,6 +181,8 @@ Json ViewSession::state() const {
     }
     std::vector<std::string> layers{"beauty"};
     layers.insert(layers.end(), r.layers.begin(), r.layers.end());
+    std::string missing;
+    const Json denoisers = denoisersJson(missing);
     Json other;
     {
         const std::lock_guard lock(mutex_);
@@ -197,8 +207,8 @@ Json ViewSession::state() const {
          {"views", texts(pictures_.views())},
          {"view", pictures_.defaultView()},
          {"exposure", shot ? Json(r.stops) : Json()},
-         {"denoisers", denoisersJson()},
-         {"denoiser_missing", Json()},
+         {"denoisers", denoisers},
+         {"denoiser_missing", missing.empty() ? Json() : Json(missing)},
          {"diagnostics", diagnosticsJson(r.diagnostics, scene_.folder())},
          {"reuse", reuseJson(r)},
          {"other", other},

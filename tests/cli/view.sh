@@ -22,6 +22,11 @@ for _ in {1..300}; do
 done
 grep -qE '^http://127\.0\.0\.1:[0-9]+/\?token=[A-Za-z0-9_-]{22,}$' url || fault "no address: $(cat url err)"
 node "$requests" "$(cat url)" room.scene || fault "requests"
+# What is shown in the end is the picture of a render.
+expect 0 render room.scene --size 96x64 --samples 16 -q -o rendered.exr
+expect 0 compare room.view-0001.exr rendered.exr --threshold 0
+expect 0 info room.view-0001.exr
+for name in version sceneHash command seed samples error cost noise; do says out "abbe.$name"; done
 # The port is taken, and only on this machine.
 port=$(sed -E 's/.*:([0-9]+)\/.*/\1/' url)
 expect 3 view room.scene --port "$port"

@@ -148,6 +148,8 @@ async function edits() {
     check((await ask("/api/picture")).status === 200, "shown while the file is gone");
     save(text);
     await finished();
+    const snapshot = await post("snapshot", {});
+    check(snapshot.status === 200 && JSON.parse(snapshot.body).files[0] === "room.view-0001.exr", `a snapshot: ${snapshot.body}`);
 }
 
 async function events() {
