@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
 
@@ -65,6 +66,19 @@ void addHit(Json& found, const Scene& scene, int x, int y) {
     found.set("position", place);
 }
 
+// Another frame for a scene, as long as this lives.
+class FrameOf {
+  public:
+    FrameOf(Scene& scene, PixelBounds frame) : scene_(scene), before_(std::exchange(scene.frame, frame)) {}
+    ~FrameOf() { scene_.frame = before_; }
+    FrameOf(const FrameOf&) = delete;
+    FrameOf& operator=(const FrameOf&) = delete;
+
+  private:
+    Scene& scene_;
+    PixelBounds before_;
+};
+
 // The pixel's own samples once more, camera paths alone, into bins of wavelengths.
 Json spectrumOf(RestingFilm& resting, int x, int y) {
     Scene& scene = resting.shot.built.scene;
@@ -82,7 +96,7 @@ Json spectrumOf(RestingFilm& resting, int x, int y) {
     const FilmSettings& film = resting.shot.film;
     // A film of each replicate's own, since the sums of layers do not tell them apart.
     std::vector<std::vector<double>> values;
-    const PixelBounds frame = std::exchange(scene.frame, pixel); // so that nobody looks ahead at all of the picture
+    const FrameOf only(scene, pixel); // so that nobody looks ahead at all of the picture
     for (int r = 0; r < kSpectrumReplicates; ++r) {
         settings.seed = resting.film.settings.seed + static_cast<std::uint64_t>(r);
         settings.samples = kSpectrumSamples;
@@ -95,7 +109,6 @@ Json spectrumOf(RestingFilm& resting, int x, int y) {
         for (int b = 0; b < plan.spectral->count(); ++b)
             bins.push_back(sums[static_cast<std::size_t>(plan.offsets().spectral + b)].value() / samples);
     }
-    scene.frame = frame;
     Json spectrum = Json::list();
     for (int b = 0; b < plan.spectral->count(); ++b) {
         double mean = 0, squares = 0;
@@ -109,7 +122,7 @@ Json spectrumOf(RestingFilm& resting, int x, int y) {
 
 } // namespace
 
-Json ViewSession::probe(const ProbeQuery& query) {
+std::optional<Json> ViewSession::probe(const ProbeQuery& query) {
     Json found = Json::object({{"x", query.x}, {"y", query.y}});
     const bool there = render_.whileResting([&](RestingFilm& resting) {
         const LiveShot& shot = resting.shot;
@@ -137,7 +150,7 @@ Json ViewSession::probe(const ProbeQuery& query) {
         found.set("spectrum", query.spectrum && inside ? spectrumOf(resting, x, y) : Json());
         found.set("spectrum_unit", "W/(m² sr nm)");
     });
-    if (!there) throw ViewFault("the picture is not there yet", "ask again in a moment");
+    if (!there) return std::nullopt;
     return found;
 }
 

@@ -214,7 +214,10 @@ struct ViewServer::Impl {
         server.Get("/api/probe", [this](const httplib::Request& request, httplib::Response& response) {
             ProbeQuery query{parameter(request, "x", -1), parameter(request, "y", -1),
                              parameter(request, "spectrum", 0) != 0};
-            answer(response, session.probe(query));
+            if (const auto found = session.probe(query))
+                answer(response, *found);
+            else
+                response.status = 204;
         });
         server.Post("/api/([a-z]+)", [this](const httplib::Request& request, httplib::Response& response) {
             const std::string name = request.matches[1].str();

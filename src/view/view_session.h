@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,7 +46,8 @@ class ViewSession {
     // Returns when it is no longer `seen`, or after the time.
     std::uint64_t waitForChange(std::uint64_t seen, double seconds);
     std::optional<ShownBytes> picture(const PictureQuery& query) { return pictures_.show(query); }
-    Json probe(const ProbeQuery&);
+    // Nothing: the picture is not there yet.
+    std::optional<Json> probe(const ProbeQuery&);
     // An order of a page: one of "camera", "region", "groups", "control", "other" and "snapshot", with its members as
     // JSON. The answer.
     Json order(std::string_view name, const std::string& body);
