@@ -3,12 +3,16 @@
 // the picture that is denoised, and the same scene with more samples, in rising order (bench/denoising.sh makes them).
 // Prints FLIP and relMSE of all, and where the denoised ones lie on the line through the noisy ones (logarithms of
 // error and samples; beyond the last one it goes on straight).
+//   bench_denoising --methods [--picture FILE.png] REFERENCE NOISY…
+// prints of each picture its samples and FLIP, and of each method FLIP, relMSE over that of the noisy picture, the
+// estimated over the true relMSE, and seconds per megapixel, with tabs between; the sheet has the last picture by all.
 #include "denoise/denoise.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
 #include "io/flip.h"
 #include "io/image_compare.h"
 #include "io/png_writer.h"
+#include "spectrum/color_space.h"
 
 #include <algorithm>
 #include <chrono>
@@ -50,6 +54,7 @@ struct Render {
         in.height = image.height();
         in.colour = layer("", {"R", "G", "B"});
         in.features = {layer("albedo.", {"R", "G", "B"}), layer("normal.", {"X", "Y", "Z"}), channel("depth.Z")};
+        if (image.chromaticities) in.toRec709 = rgb::rec709.fromXyz() * image.chromaticities->space().toXyz();
         return in;
     }
 
@@ -168,21 +173,53 @@ void run(std::vector<std::string> files, const std::string& picture) {
     if (!picture.empty()) sheet.write(picture);
 }
 
+void compareMethods(const std::vector<std::string>& files, const std::string& picture) {
+    constexpr DenoiseMethod kMethods[] = {DenoiseMethod::preview, DenoiseMethod::nfor, DenoiseMethod::oidn};
+    const Render reference(files[0]);
+    const Truth truth(reference);
+    double mean = 0;
+    for (const float v : reference.image.rgb) mean += v / static_cast<double>(reference.image.rgb.size());
+    Sheet sheet(reference.image.width(), reference.image.height(), 5);
+    for (std::size_t i = 1; i < files.size(); ++i) {
+        const Render noisy(files[i]);
+        const Figures before = truth.measure(noisy.image);
+        const bool shown = i + 1 == files.size();
+        if (shown) sheet.add(noisy.image, before, 0.5 / mean);
+        fmt::print("{}\t{:.4f}", noisy.samples, before.flip);
+        for (const DenoiseMethod method : kMethods) {
+            const auto start = std::chrono::steady_clock::now();
+            const DenoiseResult result = denoise(noisy.input(), method);
+            const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+            const RgbImage image = imageOf(reference.image, result);
+            const Figures f = truth.measure(image);
+            fmt::print("\t{:.4f}\t{:.3f}\t{:.2f}\t{:.1f}", f.flip, f.relMse / before.relMse,
+                       result.relMseAfter / f.relMse,
+                       1e6 * seconds.count() / static_cast<double>(noisy.image.window.area()));
+            if (shown) sheet.add(image, f, 0.5 / mean);
+        }
+        fmt::print("\n");
+    }
+    sheet.add(reference.image, truth.measure(reference.image), 0.5 / mean);
+    if (!picture.empty()) sheet.write(picture);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     std::vector<std::string> files(argv + 1, argv + argc);
     std::string picture;
+    const bool methods = !files.empty() && files[0] == "--methods";
+    if (methods) files.erase(files.begin());
     if (files.size() > 1 && files[0] == "--picture") {
         picture = files[1];
         files.erase(files.begin(), files.begin() + 2);
     }
-    if (files.size() < 3) {
-        fmt::print(stderr, "usage: bench_denoising [--picture FILE.png] REFERENCE NOISY LATER...\n");
+    if (files.size() < (methods ? 2 : 3)) {
+        fmt::print(stderr, "usage: bench_denoising [--methods] [--picture FILE.png] REFERENCE NOISY LATER...\n");
         return 2;
     }
     try {
-        run(files, picture);
+        methods ? compareMethods(files, picture) : run(files, picture);
     } catch (const std::exception& e) {
         fmt::print(stderr, "{}\n", e.what());
         return 1;

@@ -2,7 +2,8 @@
 # How many samples a denoised picture stands for, scene by scene (docs/performance.md, "Denoising"):
 #   bench/denoising.sh ABBE BENCH_DENOISING FOLDER [SCENE…]
 # Renders go to FOLDER and are kept: a second run measures another denoiser on the same pictures. SIZE and REFERENCE set
-# the longer side in pixels and the samples of the reference.
+# the longer side in pixels and the samples of the reference. With METHODS=1 the denoisers are compared on every number
+# of SAMPLES, as rows of a table (docs/performance.md, "Three denoisers"); $ABBE_OIDN says where Open Image Denoise is.
 set -euo pipefail
 abbe=$1 bench=$2 folder=$3
 shift 3
@@ -40,6 +41,15 @@ for scene in "${scenes[@]}"; do
     done
     render "$scene" "$reference" 2 "$folder/$scene-$size-reference.exr"
     rm -f "$scene_file"
+    if [ -n "${METHODS:-}" ]; then
+        # | scene | samples | FLIP noisy | preview | nfor | oidn | relMSE over noisy: nfor | oidn | estimate/truth: nfor | oidn |
+        "$bench" --methods --picture "$folder/$scene-$size-methods.png" "$folder/$scene-$size-reference.exr" \
+            "${pictures[@]}" | awk -F '\t' -v scene="$scene" '{
+                printf "| %s | %d | %s | %s | %s | %s | %s | %s | %s | %s |\n",
+                    scene, $1, $2, $3, $7, $11, $8, $12, $9, $13
+                printf "# s/Mpx: preview %s nfor %s oidn %s\n", $6, $10, $14 > "/dev/stderr" }'
+        continue
+    fi
     echo "$scene"
     "$bench" --picture "$folder/$scene-$size.png" "$folder/$scene-$size-reference.exr" "${pictures[@]}"
 done

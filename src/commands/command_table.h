@@ -64,7 +64,8 @@ ExitCode run(const ViewRequest&, const CommonOptions&);
 // `abbe denoise`: a denoised layer for an image.
 struct DenoiseOptions {
     std::string input, output; // no output: the input gets the layer
-    DenoiseMethod method = DenoiseMethod::nfor;
+    std::optional<DenoiseMethod> method;
+    bool preview = false; // another word for that method
 };
 
 extern const char* const kDenoiseHelp;

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "denoise/methods.h"
+#include "denoise/oidn_library.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,30 +130,64 @@ void checkInput(const DenoiseInput& input) {
 
 } // namespace
 
-std::string_view name(DenoiseMethod method) { return method == DenoiseMethod::nfor ? "nfor" : "preview"; }
-std::string_view version(DenoiseMethod method) { return method == DenoiseMethod::nfor ? "3" : "2"; }
+std::string_view name(DenoiseMethod method) {
+    constexpr std::array<std::string_view, 3> kNames{"nfor", "preview", "oidn"};
+    return kNames[static_cast<std::size_t>(method)];
+}
 
-DenoiseResult denoise(const DenoiseInput& input, DenoiseMethod method) {
-    checkInput(input);
-    const PreparedInput prepared = prepare(input, method == DenoiseMethod::nfor);
+std::string version(DenoiseMethod method) {
+    if (method == DenoiseMethod::oidn) return OidnLibrary::get().version() + " cpu";
+    return method == DenoiseMethod::nfor ? "3" : "2";
+}
+
+namespace {
+
+// Before its colours are scaled back.
+struct Denoised {
+    HalfBuffers noisy;
+    Mixture mixture;
+    float scale = 1;
+    std::uint64_t repaired = 0, outside = 0;
+};
+
+Denoised denoiseByOwn(const DenoiseInput& input, DenoiseMethod method) {
+    PreparedInput prepared = prepare(input, method == DenoiseMethod::nfor);
     Mixture mixture;
     if (method == DenoiseMethod::nfor)
         mixture = denoiseByRegression(prepared);
     else
         mixture.picture = mixture.validated = denoiseByWavelets(prepared);
+    return {std::move(prepared.colour), std::move(mixture), prepared.scale, prepared.repaired};
+}
+
+Denoised denoiseByLibrary(const DenoiseInput& input, DenoiseEffort effort) {
+    const OidnLibrary& library = OidnLibrary::get(); // before any work
+    NoisyInput noisy = noisyInput(input);
+    OidnResult result = denoiseByOidn(library, noisy, input.toRec709, effort);
+    return {std::move(noisy.colour), std::move(result.mixture), noisy.scale, noisy.repaired, result.outside};
+}
+
+} // namespace
+
+DenoiseResult denoise(const DenoiseInput& input, DenoiseMethod method, DenoiseEffort effort) {
+    checkInput(input);
+    const Denoised denoised =
+        method == DenoiseMethod::oidn ? denoiseByLibrary(input, effort) : denoiseByOwn(input, method);
     DenoiseResult result;
-    result.repaired = prepared.repaired;
+    result.repaired = denoised.repaired;
+    result.outside = denoised.outside;
     for (std::size_t c = 0; c < 3; ++c) {
-        result.colour[c] = mixture.picture[0][c].pixels();
-        const std::vector<float> other = mixture.picture[1][c].pixels();
+        result.colour[c] = denoised.mixture.picture[0][c].pixels();
+        const std::vector<float> other = denoised.mixture.picture[1][c].pixels();
         for (std::size_t i = 0; i < other.size(); ++i)
-            result.colour[c][i] = (result.colour[c][i] + other[i]) / (2 * prepared.scale);
+            result.colour[c][i] = (result.colour[c][i] + other[i]) / (2 * denoised.scale);
     }
-    const ErrorEstimate estimate(prepared.colour, mixture.validated);
+    if (effort == DenoiseEffort::look) return result;
+    const ErrorEstimate estimate(denoised.noisy, denoised.mixture.validated);
     result.relMseBefore = estimate.relMseBefore();
     result.relMseAfter = estimate.relMse();
     result.error = estimate.standardError().pixels();
-    for (float& e : result.error) e /= prepared.scale;
+    for (float& e : result.error) e /= denoised.scale;
     return result;
 }
 

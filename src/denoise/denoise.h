@@ -1,9 +1,13 @@
 // Takes the noise out of a rendered picture, with a bias, and estimates the error that is left.
 #pragma once
 
+#include "spectrum/xyz.h"
+
 #include <array>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,15 +31,30 @@ struct DenoiseInput {
     int width = 0, height = 0;
     std::array<DenoiseChannel, 3> colour; // linear; `half` is required
     DenoiseFeatures features;
+    Matrix3 toRec709 = {}; // from the colours and albedos to linear RGB of ITU-R BT.709; for `oidn` alone
 };
 
 enum class DenoiseMethod : std::uint8_t {
     nfor,    // regression on features with NL-means weights [Bitterli2016]
     preview, // wavelets with edge-stopping weights [Dammertz2010]: a hundredth of the time
+    oidn,    // Open Image Denoise on the CPU, a library that is loaded if it is there
 };
 std::string_view name(DenoiseMethod);
-// Changes whenever the same input gives another picture.
-std::string_view version(DenoiseMethod);
+// Changes whenever the same input gives another picture. Throws DenoiserFault.
+std::string version(DenoiseMethod);
+
+// A denoiser that is not there, cannot be used, or failed; with a code and what can be done about it.
+struct DenoiserFault : std::runtime_error {
+    std::string code, help;
+
+    DenoiserFault(std::string faultCode, const std::string& text, std::string remedy)
+        : std::runtime_error(text), code(std::move(faultCode)), help(std::move(remedy)) {}
+};
+
+enum class DenoiseEffort : std::uint8_t {
+    full,
+    look, // as fast as the method can, and no errors: a picture to glance at while it changes
+};
 
 struct DenoiseResult {
     std::array<std::vector<float>, 3> colour;
@@ -43,9 +62,11 @@ struct DenoiseResult {
     // Estimated relMSE of the whole picture, as `abbe compare` defines it, of the mean and of the result.
     double relMseBefore = 0, relMseAfter = 0;
     std::uint64_t repaired = 0; // pixels that were not finite; they were given the colour of their neighbours
+    std::uint64_t outside = 0;  // pixels with a negative component in Rec. 709; for `oidn` alone
 };
 
-// The result does not depend on the number of threads. Requires width, height >= 1 and matching spans.
-DenoiseResult denoise(const DenoiseInput&, DenoiseMethod);
+// The result does not depend on the number of threads. Throws DenoiserFault, and MemoryLimitExceeded. Requires width,
+// height >= 1 and matching spans.
+DenoiseResult denoise(const DenoiseInput&, DenoiseMethod, DenoiseEffort = DenoiseEffort::full);
 
 } // namespace abbe

@@ -1,13 +1,18 @@
-// The methods of denoising: a fast preview by five levels of wavelets with holes, and the denoiser for final pictures,
-// which mixes one picture from several denoised ones, by what their two halves say about their errors.
+// The methods of denoising: a fast preview by five levels of wavelets with holes; the denoiser for final pictures,
+// which mixes one picture from several denoised ones, by what their two halves say about their errors; and a neural
+// network.
 #pragma once
 
+#include "denoise/denoise.h"
 #include "denoise/half_buffers.h"
 #include "denoise/prepared_input.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace abbe {
+
+class OidnLibrary;
 
 struct Mixture {
     DenoisedHalves picture;
@@ -33,5 +38,17 @@ DenoisedHalves denoiseByWavelets(const PreparedInput&);
 // half itself, then with weights from what became of it, as in [Dabov2007]. All results, those of the wavelets and the
 // half as it is are candidates of mix().
 Mixture denoiseByRegression(const PreparedInput&);
+
+struct OidnResult {
+    // `picture`: twice the mean of both halves, denoised. `validated`: each half, denoised with its own features alone,
+    // so that the other one knows nothing of it; empty for a look.
+    Mixture mixture;
+    std::uint64_t outside = 0; // pixels of the mean with a negative component in Rec. 709
+};
+
+// By the network of Open Image Denoise, with features that it has freed of their noise. It takes no negative light, and
+// colours outside of Rec. 709 have some there: their negative part is denoised as a picture of its own, and subtracted.
+// Throws DenoiserFault and MemoryLimitExceeded.
+OidnResult denoiseByOidn(const OidnLibrary&, const NoisyInput&, const Matrix3& toRec709, DenoiseEffort);
 
 } // namespace abbe

@@ -279,6 +279,23 @@ PreparedInput prepare(const DenoiseInput& input, bool filterFeatures) {
             repaired};
 }
 
+NoisyInput noisyInput(const DenoiseInput& input) {
+    Pairs pairs = pairsOf(input, input.colour);
+    const std::uint64_t repaired = repair(pairs);
+    const float scale = scaleToTypical(pairs);
+    multiply(pairs, scale);
+    NoisyInput result{halvesOf(std::move(pairs), kColourRadius), {}, {}, scale, repaired};
+    const auto feature = [&](std::span<const DenoiseChannel> channels, std::optional<HalfBuffers>& halves) {
+        if (channels[0].mean.empty()) return;
+        Pairs found = pairsOf(input, channels);
+        repair(found);
+        halves = halvesOf(std::move(found), kFeatureRadius);
+    };
+    feature(input.features.albedo, result.albedo);
+    feature(input.features.normal, result.normal);
+    return result;
+}
+
 PreparedInput undivided(const PreparedInput& input) {
     Plane one = input.modulation.fade;
     forEachPixel(one, [](float) { return 1.f; });

@@ -6,6 +6,8 @@
 #include "denoise/half_buffers.h"
 #include "denoise/regression.h"
 
+#include <optional>
+
 namespace abbe {
 
 // NL-means over 11 × 11 pixels, each half with the weights of the other, and the mean of both [Bitterli2016, §5.1].
@@ -29,6 +31,15 @@ struct PreparedInput {
 PreparedInput prepare(const DenoiseInput&, bool filterFeatures);
 // The same with colours that are divided by nothing.
 PreparedInput undivided(const PreparedInput&);
+
+// A picture and its features with their noise, finite, for a denoiser that makes of them itself what it needs.
+struct NoisyInput {
+    HalfBuffers colour; // linear, scaled
+    std::optional<HalfBuffers> albedo, normal;
+    float scale = 1; // as in PreparedInput
+    std::uint64_t repaired = 0;
+};
+NoisyInput noisyInput(const DenoiseInput&);
 
 void multiply(ColourPlanes& colours, const ColourPlanes& factors);
 void divide(ColourPlanes& colours, const ColourPlanes& factors);

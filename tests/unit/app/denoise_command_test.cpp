@@ -65,7 +65,7 @@ TEST_CASE("abbe denoise adds a layer with its name and error, and changes nothin
         CHECK(after.info.chromaticities->matches(rgb::ap1));
         CHECK(std::get<int>(attribute(after.info, "abbe.seed")->value) == 7);
         const std::string label = std::get<std::string>(attribute(after.info, "abbe.denoiser")->value);
-        CHECK(label == std::string(name(method)) + " " + std::string(version(method)) + " (biased)");
+        CHECK(label == std::string(name(method)) + " " + version(method) + " (biased)");
         const double error = std::get<double>(attribute(after.info, "abbe.denoisedRelMse")->value);
         CHECK(error < std::get<double>(attribute(after.info, "abbe.denoisedRelMseBefore")->value));
         const std::array<std::vector<float>, 3> denoised{*after.find("denoised.R"), *after.find("denoised.G"),
