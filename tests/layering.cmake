@@ -9,6 +9,7 @@ set(below_render base math spectrum schema render)
 set(allowed_base)
 set(allowed_math base)
 set(allowed_spectrum base math)
+set(allowed_tev base)
 set(allowed_denoise base math spectrum)
 set(allowed_schema base math spectrum)
 set(allowed_parser base math spectrum schema)
@@ -58,11 +59,11 @@ set(allowed_pages ${allowed_app} app)
 set(allowed_checkpoints ${allowed_app} app study)
 set(allowed_reports ${allowed_app} app pictures pages study verify)
 set(allowed_command_line ${allowed_app} app pictures)
-set(allowed_render_run ${allowed_reports} reports checkpoints)
+set(allowed_render_run ${allowed_reports} reports checkpoints tev)
 set(allowed_farm ${allowed_app} app checkpoints study)
 set(allowed_view ${allowed_reports} reports denoise)
 set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor view)
-set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
+set(folders base math spectrum tev denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules guiding transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
             packs ${exchange} app pictures pages checkpoints reports command_line render_run farm view commands)
 

@@ -18,6 +18,7 @@ Examples:
   abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
   abbe render room.scene --json                        progress as JSON lines on stdout
   abbe render room.scene --resume                      goes on where it was interrupted
+  abbe render room.scene --tev                         shows the picture in tev while it renders
   abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
   abbe render shot.scene --frames 1-240 -o shot.####.exr    an animation, frame after frame
 
@@ -99,6 +100,22 @@ void addFrames(Arguments& a, RenderOptions& o) {
     a.afterwards([&o] { return frameContradiction(o); });
 }
 
+void addTev(Arguments& a, RenderOptions& o) {
+    const auto read = [&o](const std::string& text) {
+        TevAddress address;
+        std::string fault = text == "." ? std::string() : readTevAddress(text, address);
+        if (fault.empty()) o.tev = address;
+        return fault;
+    };
+    a.value("--tev", "HOST:PORT", read, "Show the picture and its layers in tev while it renders; 127.0.0.1:14158")
+        .valueOptional = true;
+    a.afterwards([&o]() -> std::optional<ArgumentFault> {
+        if (!o.tev || (!o.part && !o.pixel)) return std::nullopt;
+        return ArgumentFault{"--tev", fmt::format("{} makes no picture that could be shown; leave one of them out",
+                                                  o.part ? "--part" : "--pixel")};
+    });
+}
+
 } // namespace
 
 void addArguments(Arguments& a, RenderOptions& o) {
@@ -114,6 +131,7 @@ void addArguments(Arguments& a, RenderOptions& o) {
     addView(a, o.view);
     a.read("--preview", "on|off", o.preview, "on or off", readSwitch,
            "A PNG of what there is so far, until the image is written");
+    addTev(a, o);
     addJson(a, "Progress as JSON lines on stdout");
     a.read("--progress", "TIME", o.progressEvery, "a time such as 5s", readTime,
            "With --json: a line of it that often, 0.25s");

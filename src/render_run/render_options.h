@@ -7,6 +7,7 @@
 #include "pictures/image_output.h"
 #include "render/integrator.h"
 #include "scene/build.h"
+#include "tev/tev_image.h"
 
 #include <optional>
 #include <string>
@@ -32,11 +33,12 @@ struct RenderOptions {
     bool largestKernel = false; // run the instantiation with all effects
     bool quiet = false;
     bool strict = false;
-    bool cost = false;            // printed at the end
-    double progressEvery = 0.25;  // s, between lines of JSON
-    std::optional<bool> preview;  // while it goes on; unless off
-    std::optional<Vec2i> pixel;   // render this one alone and print it
-    std::optional<double> memory; // MiB, the most that may be taken
+    bool cost = false;             // printed at the end
+    double progressEvery = 0.25;   // s, between lines of JSON
+    std::optional<bool> preview;   // while it goes on; unless off
+    std::optional<TevAddress> tev; // where it is shown, too
+    std::optional<Vec2i> pixel;    // render this one alone and print it
+    std::optional<double> memory;  // MiB, the most that may be taken
     CheckpointOptions checkpoint;
     std::optional<PixelBounds> crop;
     std::optional<Vec2i> part;       // x of y equal ranges of the samples; a file for `merge` is written

@@ -1,11 +1,13 @@
-// A picture to look at while a render goes on.
+// Pictures to look at while a render goes on: a file, and the viewer tev.
 #pragma once
 
 #include "base/stopwatch.h"
 #include "pictures/image_output.h"
 #include "render/integrator.h"
+#include "tev/tev_image.h"
 
 #include <string>
+#include <vector>
 
 namespace abbe {
 
@@ -44,6 +46,40 @@ class RenderPreview {
     How how_;
     std::string path_;
     bool shown_ = false;
+    double due_ = 0; // s after the start
+    Stopwatch watch_;
+};
+
+// The film in tev: its picture as linear RGB of Rec. 709, which is what tev takes numbers for, and the film's layers
+// under their names, colours among them converted likewise. Takes no more than a twentieth of the time, but for the
+// last picture, and nothing while tev does not listen. Used from one thread.
+class TevFilm {
+  public:
+    struct How {
+        TevAddress address;
+        std::string name; // of the image in tev
+        FilmSettings film;
+        double exposure = 1; // of the camera, a factor
+        Vec3d origin;        // world position of the origin of render space
+    };
+    // The film tells bounds and layers.
+    TevFilm(How, const PixelFilm&);
+
+    // No thread may be at work on the film, here and below.
+    void show(const FramePreview&);
+    void show(const PixelFilm&);
+    // The last picture, as the file has it. Waits for tev for a while, as TevImage::finish() does.
+    void finish(FilmPicture&);
+    // As TevImage::takeWarning().
+    std::string takeWarning() { return image_.takeWarning(); }
+
+  private:
+    void send(FilmPicture&);
+
+    How how_;
+    PixelBounds bounds_;
+    std::vector<std::string> channels_;
+    TevImage image_;
     double due_ = 0; // s after the start
     Stopwatch watch_;
 };

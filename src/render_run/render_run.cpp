@@ -217,6 +217,7 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
     const auto progress = [this, &interrupt](const Progress& p) {
         tellFault();
         watch(interrupt, p);
+        tellOfTev();
         report_->progress(p);
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
@@ -228,10 +229,12 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
         report_->diagnostics(found, loaded_->sources);
         summary_.warnings += found.warningCount();
         if (preview_ && !interrupt.stop() && preview_->show(look)) report_->preview(preview_->path());
+        if (tev_) tev_->show(look);
     };
     control.passEnded = [&] {
         const bool last = state.reached() >= settings_.range(film.replicates()).last;
         if (preview_ && !last && preview_->show(film)) report_->preview(preview_->path());
+        if (tev_ && !last) tev_->show(film);
     };
     try {
         const WorkScope work(Work::none);

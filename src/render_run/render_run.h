@@ -55,6 +55,7 @@ class RenderRun {
                           integrator_->lightBlocks(built_.scene, settings_));
         if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
         openPreview();
+        openTev(film);
         render(film, state, interrupt);
         if (hasPicture_ && !options_.part) writeInMemory(film);
         return hasPicture_ ? finish(interrupt.signal()) : finish(interrupt.signal(), leaveFiles());
@@ -120,6 +121,8 @@ class RenderRun {
     void writeRescued(FilmPicture&, std::vector<ImageAttribute>, const IoError&);
     FilmPicture pictureOf(const PixelFilm&);
     void openPreview();
+    void openTev(const PixelFilm&);
+    void tellOfTev();
     ExitCode leaveFiles();
     ExitCode finish(int signal, ExitCode otherwise = ExitCode::done);
 
@@ -141,6 +144,7 @@ class RenderRun {
     WorkReading earlier_;            // of runs and parts before this one
     std::optional<RenderCheckpoint> checkpoint_;
     std::optional<RenderPreview> preview_;
+    std::optional<TevFilm> tev_;
     std::optional<FramePreview> look_; // of this run
     BringLayers bringLayers_;          // of parts: the film has those of a few rows at a time
     bool hasSamples_ = true;           // that it was to take, at least one

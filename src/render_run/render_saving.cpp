@@ -231,6 +231,8 @@ void RenderRun::write(const PixelFilm& film) {
     Diagnostics warnings;
     writeFiles(film, picture, warnings);
     endPhase("writing", watch_.lap());
+    if (tev_) tev_->finish(picture);
+    tellOfTev();
     warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);
     warnOfCappedPaths(summary_.statistics, built_, warnings);
     warnOfDensities(summary_.statistics.excess, warnings);
