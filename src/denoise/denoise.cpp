@@ -136,7 +136,7 @@ std::string_view name(DenoiseMethod method) {
 }
 
 std::string version(DenoiseMethod method) {
-    if (method == DenoiseMethod::oidn) return OidnLibrary::get().version() + " cpu";
+    if (method == DenoiseMethod::oidn) return "1 (Open Image Denoise " + OidnLibrary::get().version() + ", cpu)";
     return method == DenoiseMethod::nfor ? "3" : "2";
 }
 

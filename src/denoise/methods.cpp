@@ -37,14 +37,15 @@ Plane relativeError(const HalfBuffers& noisy, const DenoisedHalves& candidate, c
 }
 
 // Relative errors of all candidates, less their mean at each pixel: the noise of the picture that they share. Bounded.
-std::vector<Plane> comparedErrors(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates) {
+std::vector<Plane> comparedErrors(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates,
+                                  float influence) {
     std::vector<Plane> errors;
     for (const DenoisedHalves& c : candidates) errors.push_back(relativeError(noisy, c, candidates[0]));
     forEachRow(errors[0], [&](int y) {
         for (int x = 0; x < errors[0].width(); ++x) {
             float mean = 0;
             for (const Plane& e : errors) mean += e.row(y)[x] / static_cast<float>(errors.size());
-            for (Plane& e : errors) e.row(y)[x] = std::clamp(e.row(y)[x] - mean, -kInfluence, kInfluence);
+            for (Plane& e : errors) e.row(y)[x] = std::clamp(e.row(y)[x] - mean, -influence, influence);
         }
     });
     return errors;
@@ -66,8 +67,9 @@ Plane localMean(const Plane& values, Pixels pixels, bool squares) {
     return boxFilter(kept, kComparedRadius);
 }
 
-// The weights of the candidates from their errors at some pixels; 1 together.
-std::vector<Plane> weightsFrom(const std::vector<Plane>& errors, Pixels pixels) {
+// The weights of the candidates from their errors at some pixels; 1 together. `doubt`: how much less than the others
+// the last one counts where they cannot be told apart, a logarithm.
+std::vector<Plane> weightsFrom(const std::vector<Plane>& errors, Pixels pixels, float doubt) {
     std::vector<Plane> means, squares;
     for (const Plane& e : errors) {
         means.push_back(localMean(e, pixels, false));
@@ -86,7 +88,8 @@ std::vector<Plane> weightsFrom(const std::vector<Plane>& errors, Pixels pixels) 
             for (std::size_t k = 0; k < errors.size(); ++k) {
                 const float spread = kScale * (squares[k].row(y)[x] + squares[best].row(y)[x]);
                 const float excess = means[k].row(y)[x] - means[best].row(y)[x];
-                sum += weights[k].row(y)[x] = std::exp(-excess / (std::sqrt(spread) + kLeastSpread));
+                const float less = k + 1 == errors.size() ? doubt : 0;
+                sum += weights[k].row(y)[x] = std::exp(-excess / (std::sqrt(spread) + kLeastSpread) - less);
             }
             for (Plane& w : weights) w.row(y)[x] /= sum;
         }
@@ -116,17 +119,47 @@ void blend(const std::vector<DenoisedHalves>& candidates, const std::vector<Plan
 
 } // namespace
 
-Mixture mix(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates) {
+namespace {
+
+struct MixRule {
+    float influence = kInfluence;
+    float doubt = 0;
+};
+
+Mixture mix(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates,
+            const std::vector<DenoisedHalves>& shown, const MixRule& rule) {
     ABBE_CHECK(!candidates.empty());
-    const std::vector<Plane> errors = comparedErrors(noisy, candidates);
+    const std::vector<Plane> errors = comparedErrors(noisy, candidates, rule.influence);
+    const auto weights = [&](Pixels pixels) { return weightsFrom(errors, pixels, rule.doubt); };
     const Plane empty(errors[0].width(), errors[0].height());
     Mixture mixture;
     for (DenoisedHalves* halves : {&mixture.picture, &mixture.validated})
         for (ColourPlanes& half : *halves) half.fill(empty);
-    blend(candidates, weightsFrom(errors, Pixels::all), Pixels::all, mixture.picture);
-    blend(candidates, weightsFrom(errors, Pixels::white), Pixels::black, mixture.validated);
-    blend(candidates, weightsFrom(errors, Pixels::black), Pixels::white, mixture.validated);
+    blend(shown, weights(Pixels::all), Pixels::all, mixture.picture);
+    blend(candidates, weights(Pixels::white), Pixels::black, mixture.validated);
+    blend(candidates, weights(Pixels::black), Pixels::white, mixture.validated);
     return mixture;
+}
+
+DenoisedHalves untouched(const HalfBuffers& colour) {
+    DenoisedHalves result;
+    for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t c = 0; c < 3; ++c) result[half][c] = colour.halves[half][c];
+    return result;
+}
+
+} // namespace
+
+Mixture mix(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates) {
+    return mix(noisy, candidates, candidates, {});
+}
+
+// Rare bright pixels have all the noise in some places, and what is left there of a pixel's error if they are bounded
+// speaks for the picture as it is. That is where a network is of most use.
+Mixture mixWithUntouched(const HalfBuffers& noisy, const DenoisedHalves& candidate, const DenoisedHalves& whole) {
+    constexpr MixRule kRule{20, 3};
+    const DenoisedHalves same = untouched(noisy);
+    return mix(noisy, {candidate, same}, {whole, same}, kRule);
 }
 
 namespace {
@@ -265,13 +298,6 @@ void addSecondPass(const PreparedInput& input, const DenoisedHalves& first, Cand
         guides[half] = guideOf(values[half], variances, kGuideEpsilon);
     }
     addPass(input, guides, kSecondNarrowing, candidates);
-}
-
-DenoisedHalves untouched(const HalfBuffers& colour) {
-    DenoisedHalves result;
-    for (std::size_t half = 0; half < 2; ++half)
-        for (std::size_t c = 0; c < 3; ++c) result[half][c] = colour.halves[half][c];
-    return result;
 }
 
 } // namespace

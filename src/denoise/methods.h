@@ -28,6 +28,9 @@ struct Mixture {
 // blurred, so that they leave no edges. `validated` has at the black squares of a chessboard of pixels the weights that
 // the white ones give, and the other way round. Requires a candidate. Borders are extended.
 Mixture mix(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates);
+// Two candidates, the second of which is the picture as it is: it wins only where that is certain. `picture` is made of
+// `whole`, the first candidate from both halves together.
+Mixture mixWithUntouched(const HalfBuffers& noisy, const DenoisedHalves& candidate, const DenoisedHalves& whole);
 
 // Each half by the edge-avoiding wavelets of [Dammertz2010]; differences of its own colours count in units of the
 // noise, which shrinks from level to level [Schied2017]. Weights from the other half leave less noise, but then it
@@ -40,14 +43,15 @@ DenoisedHalves denoiseByWavelets(const PreparedInput&);
 Mixture denoiseByRegression(const PreparedInput&);
 
 struct OidnResult {
-    // `picture`: twice the mean of both halves, denoised. `validated`: each half, denoised with its own features alone,
-    // so that the other one knows nothing of it; empty for a look.
-    Mixture mixture;
+    Mixture mixture;           // `validated` is empty for a look
     std::uint64_t outside = 0; // pixels of the mean with a negative component in Rec. 709
 };
 
 // By the network of Open Image Denoise, with features that it has freed of their noise. It takes no negative light, and
 // colours outside of Rec. 709 have some there: their negative part is denoised as a picture of its own, and subtracted.
+// The whole picture is denoised, and each half with its own features alone, so that the other one knows nothing of it
+// and can tell how wrong it is. Where the picture as it is has the smaller error it stays: beside lights that are far
+// brighter than all else and a pixel or two wide, the network is wrong by orders of magnitude. A look is without this.
 // Throws DenoiserFault and MemoryLimitExceeded.
 OidnResult denoiseByOidn(const OidnLibrary&, const NoisyInput&, const Matrix3& toRec709, DenoiseEffort);
 

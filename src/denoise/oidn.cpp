@@ -189,10 +189,15 @@ OidnResult denoiseByOidn(const OidnLibrary& library, const NoisyInput& input, co
     const OidnDevice device(library, threadCount(), memoryForFilters(input.colour.halves[0][0]), look);
     OidnRun run(device, input, toRec709, !look);
     OidnResult result;
-    result.mixture.picture[0] = run.denoise(Taken::both);
-    result.mixture.picture[1] = result.mixture.picture[0];
+    DenoisedHalves whole;
+    whole[0] = whole[1] = run.denoise(Taken::both);
     result.outside = run.outside();
-    if (!look) result.mixture.validated = {run.denoise(Taken::first), run.denoise(Taken::second)};
+    if (look) {
+        result.mixture.picture = std::move(whole);
+        return result;
+    }
+    const DenoisedHalves halves{run.denoise(Taken::first), run.denoise(Taken::second)};
+    result.mixture = mixWithUntouched(input.colour, halves, whole);
     return result;
 }
 

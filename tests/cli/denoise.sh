@@ -14,13 +14,13 @@ expect 0 room.scene --size 80x64 --samples 16 --quiet -o room.exr
 # The header has the name and the version; nothing else of the picture changes, and another method takes its place.
 export ABBE_OIDN=$stub
 expect 0 denoise room.exr --method oidn -o oidn.exr
-says err "denoised by oidn 2.5.9 cpu"
+says err "denoised by oidn 1 (Open Image Denoise 2.5.9, cpu)"
 says err "relMSE"
 expect 0 info oidn.exr
-says out "abbe.denoiser = oidn 2.5.9 cpu (biased)"
+says out "abbe.denoiser = oidn 1 (Open Image Denoise 2.5.9, cpu) (biased)"
 expect 0 compare oidn.exr room.exr --threshold 0
 expect 0 denoise room.exr --method oidn --json -o oidn.exr
-says out '"denoiser":"oidn 2.5.9 cpu"'
+says out '"denoiser":"oidn 1 (Open Image Denoise 2.5.9, cpu)"'
 says out '"outside_rec709"'
 expect 0 denoise oidn.exr --method preview
 expect 0 info oidn.exr

@@ -1,6 +1,7 @@
 // Stands for Open Image Denoise in tests: its C interface without any network. $OIDN_STUB says what it does:
 //   (nothing)   the output is the input
 //   blur        the mean of 3 × 3 pixels, the same for light and features
+//   spill       as the first, but light of 60 in the rows 20 to 29
 //   old         says that it is version 1.4.3
 //   no-device   has no device
 //   commit      committing a filter fails
@@ -170,6 +171,8 @@ void oidnExecuteFilter(void* filter) {
         blur(input, output);
     else
         std::copy_n(input.pixels, input.size(), output.pixels);
+    if (mode() == "spill" && main == std::string("color"))
+        std::fill_n(output.pixels + 60 * output.width, 30 * output.width, 60.f);
     if (mode() == "nan") output.pixels[output.size() / 2] = NAN;
 }
 }

@@ -72,7 +72,7 @@ TEST_CASE("oidn: what the library does not change comes back as it was, with its
         CHECK(r.outside == 0);
     }
     CHECK(name(DenoiseMethod::oidn) == "oidn");
-    CHECK(version(DenoiseMethod::oidn) == "2.5.9 cpu");
+    CHECK(version(DenoiseMethod::oidn) == "1 (Open Image Denoise 2.5.9, cpu)");
 }
 
 // The stub refuses light below 0, as the network takes none, so that a result with the negative parts of deep colours
@@ -111,6 +111,17 @@ TEST_CASE("oidn: the estimated error is the error") {
     MESSAGE("after " << after << " ~ " << estimated << " ~ " << pixels);
     CHECK(estimated / after == doctest::Approx(1).epsilon(0.08));
     CHECK(pixels / estimated == doctest::Approx(1).epsilon(0.05));
+}
+
+// As the network does it with light of a thousand times what is around, a pixel or two wide.
+TEST_CASE("oidn: where it is certain that the picture is ruined, it stays as it is") {
+    const Variable library("ABBE_OIDN", ABBE_OIDN_STUB), mode("OIDN_STUB", "spill");
+    const SyntheticPicture picture(96, 70, 0.3f);
+    const DenoiseResult r = denoise(picture.input(), DenoiseMethod::oidn);
+    CHECK(picture.relMse(r.colour) < 3 * picture.relMse(picture.mean));
+    CHECK(r.relMseAfter < 3 * r.relMseBefore);
+    const DenoiseResult look = denoise(picture.input(), DenoiseMethod::oidn, DenoiseEffort::look);
+    CHECK(picture.relMse(look.colour) > 100 * picture.relMse(picture.mean));
 }
 
 TEST_CASE("oidn: each half is denoised with its own features, and these are denoised before") {
