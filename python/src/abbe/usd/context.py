@@ -1,0 +1,237 @@
+"""What all converters share: options, the stage, times, names, files and the report."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from pxr import Gf, Usd, UsdGeom
+
+from .files import SideFiles
+from .report import Report
+from .scene_text import Node, number
+
+NIT_PER_ONE = 72983.0  # nits that show as 1 without an exposure (docs/conventions.md)
+UNITS = {1e-9: "nm", 1e-6: "um", 1e-3: "mm", 1e-2: "cm", 1.0: "m", 1e3: "km", 0.0254: "in", 0.3048: "ft"}
+MAX_KEYS = 4096  # of one motion
+
+Matrix = npt.NDArray[np.float64]  # 4 × 4, of row vectors as USD has them
+
+
+@dataclasses.dataclass(frozen=True)
+class Options:
+    """What is wanted of a stage. Times are time codes of the stage."""
+
+    camera: str | None = None
+    frame: float | None = None
+    frames: tuple[float, float] | None = None  # first and last, for an animation
+    purposes: tuple[str, ...] | None = None  # None: those of the render settings, else default and render
+    variants: tuple[tuple[str, str, str], ...] = ()  # path of a prim or empty for the default prim, set, choice
+    max_instances: int = 100_000_000  # of one point instancer
+
+
+@dataclasses.dataclass
+class Times:
+    """The moments that count, in time codes."""
+
+    first: float = 0.0  # when the shutter first opens
+    last: float = 0.0  # when it last closes
+    open: float = 0.0  # relative to a frame
+    close: float = 0.0
+    per_second: float = 24.0
+    animated: bool = False  # a range of frames
+
+    def seconds(self, code: float) -> float:
+        return code / self.per_second
+
+    def of_samples(self, samples: Sequence[float]) -> list[float]:
+        """The keys of something with these samples: both ends and all samples between; one if it stands still."""
+        if self.last <= self.first or len(samples) < 2:
+            return [self.first]
+        between = [t for t in samples if self.first < t < self.last]
+        if not between and (samples[-1] <= self.first or samples[0] >= self.last):
+            return [self.first]
+        return [self.first, *between, self.last]
+
+
+def as_float(x: float) -> float:
+    """A number that is stored in single precision, as the shortest double that says the same."""
+    return float(str(np.float32(x)))
+
+
+def matrix_of(m: Gf.Matrix4d) -> Matrix:
+    return np.array(m, dtype=np.float64)
+
+
+class Place:
+    """Where a prim stands: its own operations and those of what holds it, at any time."""
+
+    __slots__ = ("_cache", "_fixed", "_parent", "_xformable", "samples")
+
+    def __init__(self, parent: Place | None, xformable: Any = None, fixed: Matrix | None = None) -> None:
+        self._parent = parent
+        self._xformable = None
+        self._fixed = np.eye(4) if fixed is None else fixed
+        self._cache: dict[float, Matrix] = {}
+        self.samples: list[float] = list(parent.samples) if parent else []
+        if xformable is None or not xformable.GetXformOpOrderAttr().HasAuthoredValue():
+            return
+        if xformable.GetResetXformStack():
+            while self._parent is not None and self._parent._parent is not None:
+                self._parent = self._parent._parent
+            self.samples = []
+        own = xformable.GetTimeSamples() if xformable.TransformMightBeTimeVarying() else []
+        if len(own) > 1:
+            self.samples = sorted({*self.samples, *own})
+            self._xformable = xformable
+        else:
+            self._fixed = matrix_of(xformable.GetLocalTransformation(Usd.TimeCode.EarliestTime()))
+
+    def at(self, time: float) -> Matrix:
+        key = time if self.samples else 0.0
+        if key not in self._cache:
+            local = self._fixed if self._xformable is None else matrix_of(self._xformable.GetLocalTransformation(time))
+            self._cache[key] = local if self._parent is None else local @ self._parent.at(time)
+        return self._cache[key]
+
+
+class Context:
+    """A conversion on its way."""
+
+    def __init__(self, stage: Usd.Stage, options: Options, report: Report) -> None:
+        self.stage = stage
+        self.options = options
+        self.report = report
+        self.files = SideFiles()
+        self.times = Times()
+        self.purposes: tuple[str, ...] = ("default", "render")
+        self.binding_purposes: tuple[str, ...] = ("full", "")
+        self.up = "z" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else "y"
+        self.metres = float(UsdGeom.GetStageMetersPerUnit(stage))  # in a unit of the stage
+        self.unit, self.scale = "m", 1.0  # of the scene; stage lengths times scale are in it
+        self._choose_unit()
+        self.had_lights = False  # the stage, whatever became of them
+        self.lit = False  # the scene, by a light
+        self.emits = False
+        self.bounds = empty_bounds()
+        self._names: dict[str, set[str]] = {}
+
+    def _choose_unit(self) -> None:
+        if not (math.isfinite(self.metres) and 1e-12 <= self.metres <= 1e12):
+            self.report.error("E0802", None, f"metersPerUnit is {self.metres}", "it is the length of a unit in metres, above 0")
+            self.metres = 1.0
+        for metres, unit in UNITS.items():
+            if abs(self.metres / metres - 1) < 1e-6:
+                self.unit, self.metres = unit, metres
+                return
+        self.scale = self.metres
+
+    @property
+    def metres_per_scene_unit(self) -> float:
+        return self.metres / self.scale
+
+    def root(self) -> Place:
+        return Place(None, fixed=np.diag([self.scale, self.scale, self.scale, 1.0]))
+
+    def name(self, kind: str, path: str) -> str:
+        """A name for a definition, after the path of a prim."""
+        stem = path.strip("/") or kind
+        taken = self._names.setdefault(kind, set())
+        name, n = stem, 1
+        while name in taken:
+            n += 1
+            name = f"{stem}~{n}"
+        taken.add(name)
+        return name
+
+    def grow(self, points: npt.NDArray[Any], place: Place) -> None:
+        """Counts points into the bounds of the scene, for a camera that shows all of it."""
+        if not len(points):
+            return
+        low, high = np.min(points, axis=0), np.max(points, axis=0)
+        corners = np.array([[x, y, z, 1.0] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+        world = (corners @ place.at(self.times.first))[:, :3]
+        self.bounds[0] = np.minimum(self.bounds[0], world.min(axis=0))
+        self.bounds[1] = np.maximum(self.bounds[1], world.max(axis=0))
+
+    def keys(self, place: Place) -> list[float]:
+        return self.times.of_samples(place.samples)
+
+    # Lengths of the stage in metres.
+    def length(self, x: float) -> float:
+        return as_float(x) * self.metres
+
+
+def empty_bounds() -> Matrix:
+    return np.array([[math.inf] * 3, [-math.inf] * 3])
+
+
+def is_finite(m: Matrix) -> bool:
+    return bool(np.isfinite(m).all())
+
+
+def is_similarity(m: Matrix, tolerance: float = 1e-4) -> bool:
+    """Whether a map only turns, moves, mirrors, and scales evenly."""
+    a = m[:3, :3] @ m[:3, :3].T
+    size = a.trace() / 3
+    return size > 0 and bool((np.abs(a - np.eye(3) * size) <= tolerance * size).all())
+
+
+def size_of(m: Matrix) -> float:
+    """By how much a similarity scales."""
+    return float(abs(np.linalg.det(m[:3, :3]))) ** (1 / 3)
+
+
+def _steps(node: Node, m: Matrix) -> None:
+    a = m[:3, :3]
+    if np.count_nonzero(a - np.diag(a.diagonal())):
+        row = m.T.copy()
+        row[3] = (0, 0, 0, 1)
+        node.child("matrix").numbers(row.reshape(-1))
+        return
+    scale = a.diagonal()
+    if not (scale == 1).all():
+        node.child("scale").numbers(scale[:1] if (scale == scale[0]).all() else scale)
+    if m[3, :3].any() or (scale == 1).all():
+        node.child("translate").numbers(m[3, :3] + 0.0)
+
+
+def _refined(place: Place, keys: list[float]) -> Iterator[float]:
+    """More keys where something turns far between two: maps are interpolated by the shorter way."""
+    for a, b in zip(keys, keys[1:], strict=False):
+        yield a
+        turn = np.linalg.norm(place.at(a)[:3, :3] - place.at((a + b) / 2)[:3, :3]) / max(
+            1e-30, np.linalg.norm(place.at(a)[:3, :3])
+        )
+        pieces = min(64, math.ceil(turn / 0.1))  # some 15 degrees each
+        for i in range(1, pieces):
+            yield a + (b - a) * i / pieces
+    yield keys[-1]
+
+
+def write_transform(ctx: Context, node: Node, place: Place, prim: Any, before: Matrix | None = None) -> bool:
+    """Writes where something stands, with keys if it moves. False, with a remark, where that cannot be."""
+    maps = []
+    keys = list(_refined(place, ctx.keys(place)))[:MAX_KEYS]
+    for time in keys:
+        m = place.at(time) if before is None else before @ place.at(time)
+        if not is_finite(m):
+            ctx.report.error("E0802", prim, "its transform is not finite", "look at its xformOps")
+            return False
+        if abs(np.linalg.det(m[:3, :3])) < 1e-30:
+            ctx.report.left_out(prim, "what has no extent", "its transform has a determinant of 0")
+            return False
+        maps.append(m)
+    if all((m == maps[0]).all() for m in maps):
+        if not (maps[0] == np.eye(4)).all():
+            _steps(node.child("transform"), maps[0])
+        return True
+    transform = node.child("transform")
+    for time, m in zip(keys, maps, strict=True):
+        key = transform.child("at", number(ctx.times.seconds(time)), "s")
+        _steps(key, m)
+    return True

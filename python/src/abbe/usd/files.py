@@ -1,0 +1,79 @@
+"""Files that a scene reads: those written beside it, and those that the stage names."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import re
+import tempfile
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Union
+
+import numpy as np
+
+from .scene_text import FileRef
+
+Buffer = Union[bytes, memoryview, "np.ndarray"]
+_COMPARED = 8 << 20  # bytes; larger files are not compared with those that are there
+
+
+def write_atomically(path: Path, parts: Iterable[Buffer]) -> None:
+    """Writes a file under another name and renames it, so that nobody ever reads half of it. Raises OSError."""
+    descriptor, name = tempfile.mkstemp(prefix=f".{path.name[:40]}.", dir=path.parent)
+    try:
+        with os.fdopen(descriptor, "wb") as stream:
+            for part in parts:
+                stream.write(part.data if isinstance(part, np.ndarray) and part.size else part)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)
+        os.replace(name, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+class SideFiles:
+    """Files in memory until the scene is written. Equal ones are one file."""
+
+    def __init__(self) -> None:
+        self.parts: dict[str, list[Buffer]] = {}
+        self._by_content: dict[tuple[str, bytes], str] = {}
+        self._stems: dict[str, int] = {}
+
+    def add(self, stem: str, extension: str, parts: Sequence[Buffer]) -> FileRef:
+        """A file named after `stem`, as far as file systems like it."""
+        kept = [p for p in parts if len(p)]
+        size = sum(p.nbytes if isinstance(p, (np.ndarray, memoryview)) else len(p) for p in kept)
+        key = None
+        if size <= _COMPARED:
+            digest = hashlib.blake2b(digest_size=16)
+            for part in kept:
+                digest.update(np.ascontiguousarray(part) if isinstance(part, np.ndarray) else part)
+            key = (extension, digest.digest())
+            if key in self._by_content:
+                return FileRef(self._by_content[key], own=True)
+        name = self._free_name(stem, extension)
+        self.parts[name] = kept
+        if key:
+            self._by_content[key] = name
+        return FileRef(name, own=True)
+
+    def _free_name(self, stem: str, extension: str) -> str:
+        plain = re.sub(r"[^A-Za-z0-9._-]+", "_", stem).strip("._") or "file"
+        plain = plain[-80:]
+        taken = self._stems.get(plain.lower(), 0)
+        self._stems[plain.lower()] = taken + 1
+        name = f"{plain}-{taken + 1}.{extension}" if taken else f"{plain}.{extension}"
+        return name if name not in self.parts else self._free_name(stem + "_", extension)
+
+    def write(self, folder: Path) -> None:
+        """Writes all files into `folder`, which is made. Raises OSError."""
+        if not self.parts:
+            return
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, parts in self.parts.items():
+            write_atomically(folder / name, parts)

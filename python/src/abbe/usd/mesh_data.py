@@ -1,0 +1,385 @@
+"""Meshes as numbers: faces, primvars of all interpolations, vertices that are split where corners differ."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from pxr import Usd, UsdGeom
+
+from . import ply
+from .context import Context, as_float
+from .materials import Look
+from .scene_text import Node, number
+
+INLINE = 24  # points of a mesh that is written into the scene
+LEAST_CORNERS = 3
+
+Array = npt.NDArray[Any]
+
+
+@dataclasses.dataclass
+class Primvar:
+    """Numbers of a mesh, brought to its points or to its corners."""
+
+    values: Array  # rows
+    index: Array | None  # of each point, or of each corner; None: rows are in order
+    by_corner: bool
+
+    def at_points(self, count: int) -> Array:
+        return self.values[:count] if self.index is None else self.values[self.index]
+
+
+@dataclasses.dataclass
+class Topology:
+    counts: npt.NDArray[np.int32]
+    corners: npt.NDArray[np.int32]
+    point_count: int
+
+    @property
+    def starts(self) -> Array:
+        return np.cumsum(self.counts, dtype=np.int64) - self.counts
+
+
+class BadMesh(Exception):
+    """What is wrong with a mesh."""
+
+
+def read_points(ctx: Context, geometry: Any, time: float) -> Array:
+    """Points in single precision, checked. Raises BadMesh."""
+    values = geometry.GetPointsAttr().Get(time)
+    if values is None:
+        return np.zeros((0, 3), np.float32)
+    points = np.asarray(values, np.float32)
+    if not np.isfinite(points).all():
+        bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+        raise BadMesh(f"point {bad} is not finite")
+    return points
+
+
+def read_topology(mesh: UsdGeom.Mesh, time: float, point_count: int) -> Topology:
+    """Faces, checked. Raises BadMesh."""
+    counts = np.asarray(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int32)
+    corners = np.asarray(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int32)
+    if len(counts) and int(counts.min()) < 0:
+        raise BadMesh(f"face {int(counts.argmin())} has {int(counts.min())} corners")
+    total = int(counts.sum(dtype=np.int64))
+    if total != len(corners):
+        raise BadMesh(f"faceVertexCounts asks for {total} corners, faceVertexIndices has {len(corners)}")
+    if len(corners):
+        low, high = int(corners.min()), int(corners.max())
+        if low < 0 or high >= point_count:
+            raise BadMesh(f"a face has point {low if low < 0 else high}, but there are {point_count}")
+    return Topology(counts, corners, point_count)
+
+
+def moving_points(ctx: Context, geometry: Any, prim: Usd.Prim) -> list[tuple[float, Array]]:
+    """Points at each key: from samples, else along velocities. Raises BadMesh."""
+    times = ctx.times
+    samples = list(geometry.GetPointsAttr().GetTimeSamples())
+    velocity = geometry.GetVelocitiesAttr()
+    keys = times.of_samples(samples)
+    if times.last > times.first and len(velocity.GetTimeSamples() or []) + bool(velocity.HasAuthoredValue()) > 0:
+        between = [t for t in samples if times.first < t < times.last]
+        keys = sorted({times.first, *between, times.last})
+        base = (times.first + times.last) / 2 if not times.animated else times.first
+        computed = []
+        for key in keys:
+            points = np.asarray(geometry.ComputePointsAtTime(key, key if times.animated else base), np.float32)
+            if not np.isfinite(points).all():
+                raise BadMesh("points that follow velocities are not finite")
+            computed.append((key, points))
+        if all(len(p) == len(computed[0][1]) for _, p in computed):
+            return computed
+    found = [(key, read_points(ctx, geometry, key)) for key in keys]
+    if any(len(points) != len(found[0][1]) for _, points in found):
+        ctx.report.approximated(prim, "a change of its points", "it stands as it is when the shutter opens: points come or go")
+        return found[:1]
+    if all(points is found[0][1] or np.array_equal(points, found[0][1]) for _, points in found[1:]):
+        return found[:1]
+    return found
+
+
+def to_primvar(name: str, values: Array, indices: Array | None, interpolation: str, topology: Topology) -> Primvar:
+    """Checks the size of a primvar. Raises BadMesh."""
+    face_count, corner_count = len(topology.counts), len(topology.corners)
+    need = {"constant": 1, "uniform": face_count, "faceVarying": corner_count}.get(interpolation, topology.point_count)
+    if indices is not None and len(indices) and (int(indices.min()) < 0 or int(indices.max()) >= len(values)):
+        raise BadMesh(f"the indices of primvar {name} leave its {len(values)} values")
+    have = len(values) if indices is None else len(indices)
+    if have < need:
+        raise BadMesh(f"primvar {name} ({interpolation}) has {have} values for {need}")
+    if values.dtype.kind == "f" and not np.isfinite(values).all():
+        raise BadMesh(f"a value of primvar {name} is not finite")
+    rows = values.astype(np.float32, copy=False).reshape(len(values), -1)
+    if interpolation == "constant":
+        first = 0 if indices is None else int(indices[0])
+        return Primvar(rows, np.full(topology.point_count, first, np.int32), False)
+    if interpolation == "uniform":
+        of_face = np.arange(face_count, dtype=np.int32) if indices is None else indices[:face_count]
+        return Primvar(rows, np.repeat(of_face, topology.counts), True)
+    if interpolation == "faceVarying":
+        return Primvar(rows, np.arange(corner_count, dtype=np.int32) if indices is None else indices[:corner_count], True)
+    return Primvar(rows, indices, False)
+
+
+def read_primvar(prim: Usd.Prim, name: str, time: float, topology: Topology) -> Primvar | None:
+    """A primvar of the prim or of what holds it; None if there is none. Raises BadMesh."""
+    primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
+    if not primvar or not primvar.HasValue():
+        return None
+    values = primvar.Get(time)
+    if values is None:
+        return None
+    array = np.asarray(values) if hasattr(values, "__len__") and not isinstance(values, str) else np.asarray([values])
+    if array.dtype.kind not in "fiu":
+        return None
+    if primvar.GetTypeName().scalarType == primvar.GetTypeName():
+        array = array.reshape(1, -1)
+    indices = primvar.GetIndices(time) if primvar.IsIndexed() else None
+    return to_primvar(name, array, None if not indices else np.asarray(indices, np.int32),
+                      str(primvar.GetInterpolation()), topology)
+
+
+def flipped(topology: Topology) -> Array:
+    """For each corner, which one is there when all faces are turned around."""
+    if len(topology.counts) and (topology.counts == topology.counts[0]).all():
+        n = int(topology.counts[0])
+        return np.arange(len(topology.corners)).reshape(-1, n)[:, ::-1].reshape(-1)
+    starts = np.repeat(topology.starts, topology.counts)
+    lengths = np.repeat(topology.counts, topology.counts)
+    at = np.arange(len(topology.corners))
+    return starts + lengths - 1 - (at - starts)
+
+
+def without_faces(topology: Topology, gone: Array) -> tuple[Topology, Array]:
+    """The other faces, and which corners they have."""
+    keep = np.ones(len(topology.counts), bool)
+    keep[gone] = False
+    return of_faces(topology, keep)
+
+
+def of_faces(topology: Topology, keep: Array) -> tuple[Topology, Array]:
+    kept_corners = np.flatnonzero(np.repeat(keep, topology.counts))
+    return Topology(topology.counts[keep], topology.corners[kept_corners], topology.point_count), kept_corners
+
+
+def weld(topology: Topology, primvars: list[Primvar]) -> tuple[Array, Array]:
+    """Splits points at whose corners primvars differ. Returns the vertex of each corner, and one corner of each vertex.
+
+    A vertex is made for each point from one of its corners. The few corners that disagree with it are sorted out after.
+    """
+    corners = topology.corners
+    representative = np.full(topology.point_count, -1, np.int64)
+    representative[corners] = np.arange(len(corners))
+    mine = representative[corners]
+    differs = np.zeros(len(corners), bool)
+    for primvar in primvars:
+        index = primvar.index if primvar.index is not None else np.arange(len(corners))
+        a, b = index, index[mine]
+        doubtful = np.flatnonzero(a != b)
+        unequal = (primvar.values[a[doubtful]] != primvar.values[b[doubtful]]).any(axis=1)
+        differs[doubtful[unequal]] = True
+    used = representative[representative >= 0]
+    vertex = np.cumsum(representative >= 0) - 1
+    vertex_of_corner = vertex[corners]
+    odd = np.flatnonzero(differs)
+    if len(odd):
+        columns = [corners[odd].astype(np.float64)[:, None]]
+        for p in primvars:
+            index = p.index if p.index is not None else np.arange(len(corners))
+            columns.append(p.values[index[odd]].astype(np.float64))
+        _, first, inverse = np.unique(np.hstack(columns) + 0.0, axis=0, return_index=True, return_inverse=True)
+        vertex_of_corner = vertex_of_corner.copy()
+        vertex_of_corner[odd] = len(used) + inverse.reshape(-1)
+        used = np.concatenate([used, odd[first]])
+    return vertex_of_corner.astype(np.int32), used
+
+
+@dataclasses.dataclass
+class Surface:
+    """A mesh as it was read: all that the parts of it share."""
+
+    prim: Usd.Prim
+    topology: Topology
+    points: list[tuple[float, Array]]
+    uvs: Primvar | None
+    normals: list[Primvar]  # one for each key, or none
+    attributes: dict[str, Primvar]
+    faces: Array  # the numbers that the faces have in the stage
+
+    def by_corner(self) -> list[Primvar]:
+        found = [p for p in (self.uvs, *self.normals, *self.attributes.values()) if p is not None]
+        return [p for p in found if p.by_corner]
+
+
+def _read_normals(mesh: UsdGeom.Mesh, keys: list[float], topology: Topology) -> list[Primvar]:
+    """Normals of polygons: primvars:normals, else normals; those of whole faces are as good as none."""
+    found = []
+    for time in keys:
+        primvar = UsdGeom.PrimvarsAPI(mesh.GetPrim()).GetPrimvar("normals")
+        interpolation = str(primvar.GetInterpolation()) if primvar.HasValue() else str(mesh.GetNormalsInterpolation())
+        if interpolation in ("constant", "uniform"):
+            return []
+        if primvar.HasValue():
+            one = read_primvar(mesh.GetPrim(), "normals", time, topology)
+        else:
+            values = mesh.GetNormalsAttr().Get(time)
+            one = None if values is None or not len(values) else to_primvar("normals", np.asarray(values), None, interpolation, topology)
+        if one is None or one.values.shape[1] != 3:
+            return []
+        found.append(one)
+    return found
+
+
+def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: bool) -> Surface | None:
+    """A mesh with what its materials ask for. None where there is nothing to show. Raises BadMesh."""
+    prim, time = mesh.GetPrim(), ctx.times.first
+    points = moving_points(ctx, mesh, prim)
+    topology = read_topology(mesh, time, len(points[0][1]))
+    if not len(topology.corners) or not len(points[0][1]):
+        ctx.report.left_out(prim, "a mesh without faces", "it shows nothing")
+        return None
+    small = topology.counts < LEAST_CORNERS
+    if small.any():
+        ctx.report.left_out(prim, "faces of fewer than three corners", "they have no area")
+    uv_names = [look.uv for look in looks if look.uv]
+    uvs = None
+    for name in [*dict.fromkeys(uv_names), "st"] if uv_names else ["st"]:
+        uvs = read_primvar(prim, name, time, topology)
+        if uvs is not None and uvs.values.shape[1] >= 2:
+            uvs.values = uvs.values[:, :2]
+            break
+        uvs = None
+    if uvs is None and uv_names:
+        uvs = Primvar(np.zeros((1, 2), np.float32), np.zeros(len(points[0][1]), np.int32), False)
+        ctx.report.approximated(prim, f"the texture coordinates {uv_names[0]}", "it has none: 0 0 everywhere")
+    attributes = {}
+    for look in looks:
+        for name, (source, size, fallback) in look.attributes.items():
+            values = read_primvar(prim, source, time, topology)
+            if values is None or values.values.shape[1] < size:
+                rows = np.asarray([fallback], np.float32).reshape(1, -1)
+                values = Primvar(rows, np.zeros(len(points[0][1]), np.int32), False)
+            values.values = values.values[:, :size]
+            attributes[name] = values
+    normals = [] if is_cage else _read_normals(mesh, [key for key, _ in points], topology)
+    surface = Surface(prim, topology, points, uvs, normals, attributes, np.arange(len(topology.counts)))
+    gone = np.flatnonzero(small)
+    if not is_cage:
+        holes = np.asarray(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
+        if len(holes) and (int(holes.min()) < 0 or int(holes.max()) >= len(topology.counts)):
+            raise BadMesh(f"holeIndices names face {int(holes.max())}, but there are {len(topology.counts)}")
+        gone = np.union1d(gone, holes).astype(np.int64)
+    if len(gone):
+        surface.topology, kept = without_faces(topology, gone)
+        surface.faces = np.delete(surface.faces, gone)
+        _select(surface, kept)
+    if mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded:
+        order = flipped(surface.topology)
+        surface.topology = dataclasses.replace(surface.topology, corners=surface.topology.corners[order])
+        _select(surface, order)
+    return surface
+
+
+def _select(surface: Surface, corners: Array) -> None:
+    """Takes these corners in this order, in all that belongs to corners."""
+    done: set[int] = set()
+    for primvar in surface.by_corner():
+        if id(primvar) not in done and primvar.index is not None:
+            primvar.index = primvar.index[corners]
+            done.add(id(primvar))
+
+
+def part(surface: Surface, faces: Array) -> Surface:
+    """The faces of a mask, as a mesh of its own."""
+    topology, kept = of_faces(surface.topology, faces)
+
+    def taken(p: Primvar | None) -> Primvar | None:
+        if p is None or not p.by_corner or p.index is None:
+            return p
+        return Primvar(p.values, p.index[kept], True)
+
+    normals = [n for n in (taken(p) for p in surface.normals) if n is not None]
+    attributes = {k: v for k, v in ((k, taken(p)) for k, p in surface.attributes.items()) if v is not None}
+    return Surface(surface.prim, topology, surface.points, taken(surface.uvs), normals, attributes, surface.faces[faces])
+
+
+def vertices(surface: Surface) -> tuple[Array, Array | None, Array | None]:
+    """The vertex of each corner; the point of each vertex, and a corner of it, unless vertices are points."""
+    topology = surface.topology
+    split = surface.by_corner()
+    if split:
+        vertex_of_corner, corner_of_vertex = weld(topology, split)
+        return vertex_of_corner, topology.corners[corner_of_vertex], corner_of_vertex
+    used = np.zeros(topology.point_count, bool)
+    used[topology.corners] = True
+    if used.all():
+        return topology.corners, None, None
+    number_of = np.cumsum(used) - 1
+    return number_of[topology.corners].astype(np.int32), np.flatnonzero(used), None
+
+
+def _columns(surface: Surface, key: int, point: Array | None, corner: Array | None) -> list[tuple[str, ply.Floats]]:
+    positions = surface.points[key][1]
+    positions = positions if point is None else positions[point]
+    columns = [("x", positions[:, 0]), ("y", positions[:, 1]), ("z", positions[:, 2])]
+
+    def add(primvar: Primvar, names: list[str]) -> None:
+        if primvar.by_corner:
+            assert primvar.index is not None and corner is not None
+            rows = primvar.values[primvar.index[corner]]
+        else:
+            rows = primvar.at_points(surface.topology.point_count)
+            rows = rows if point is None else rows[point]
+        columns.extend((name, rows[:, i]) for i, name in enumerate(names))
+
+    if surface.normals:
+        add(surface.normals[min(key, len(surface.normals) - 1)], ["nx", "ny", "nz"])
+    if surface.uvs is not None:
+        add(surface.uvs, ["u", "v"])
+    for name, primvar in surface.attributes.items():
+        add(primvar, ["red", "green", "blue"] if name == "color" else [name])
+    return columns
+
+
+def write_polygons(ctx: Context, surface: Surface, stem: str, node: Node, keep_points: bool = False) -> None:
+    """A polygon mesh: in the scene if it is small, else as PLY beside it; one file for each key."""
+    corners, point, corner = (surface.topology.corners, None, None) if keep_points else vertices(surface)
+    small = len(surface.points[0][1] if point is None else point) <= INLINE and not surface.normals
+    for key, (time, _) in enumerate(surface.points):
+        columns = _columns(surface, key, point, corner)
+        at = node if len(surface.points) == 1 else node.child("at", number(ctx.times.seconds(time)), "s")
+        if small:
+            at.rows("points", _shortest([c for _, c in columns[:3]]))
+            if key == 0:
+                _write_inline(surface, corners, dict(columns), node)
+            continue
+        ref = ctx.files.add(stem if key == 0 else f"{stem}.{key}", "ply", ply.mesh(columns, surface.topology.counts, corners))
+        if at is node:
+            node.file(ref)
+        else:
+            at.child("file").file(ref)
+
+
+def _shortest(columns: list[ply.Floats]) -> list[list[float]]:
+    return [[as_float(x) + 0.0 for x in row] for row in zip(*columns, strict=True)]
+
+
+def _write_inline(surface: Surface, corners: Array, columns: dict[str, ply.Floats], node: Node) -> None:
+    faces = node.child("faces")
+    starts, counts = surface.topology.starts, surface.topology.counts
+    faces.children = [Node("-").numbers(corners[s : s + n]) for s, n in zip(starts, counts, strict=True)]
+    if surface.uvs is not None:
+        node.rows("uvs", _shortest([columns["u"], columns["v"]]))
+    for name in surface.attributes:
+        if name == "color":
+            attribute = node.child("attribute").text("color")
+            rows = _shortest([columns[c] for c in ("red", "green", "blue")])
+            attribute.children = [Node("-").numbers(row) for row in rows]
+        else:
+            node.child("attribute").text(name).numbers(as_float(x) for x in columns[name])
+
+
