@@ -18,7 +18,7 @@ def main() -> int:
     if len(sys.argv) > 1:
         os.environ["ABBE"] = os.path.abspath(sys.argv[1])
     here = Path(__file__).resolve().parent
-    sys.path.insert(0, str(here))
+    sys.path[:0] = [str(here.parent / "src"), str(here)]
     loader = unittest.TestLoader()
     suite = loader.loadTestsFromNames(sys.argv[2:]) if len(sys.argv) > 2 else loader.discover(str(here))
     return 0 if unittest.TextTestRunner(verbosity=1).run(suite).wasSuccessful() else 1

@@ -165,7 +165,7 @@ class Meshes(StageTest):
             self.assertEqual(block.count("-"), points, block)
 
     def test_subsets(self) -> None:
-        material = 'def Material "{0}" {{\n token outputs:surface.connect = </World/{0}/s.outputs:surface>\n def Shader "s" {{ uniform token info:id = "UsdPreviewSurface"\n token outputs:surface\n }}\n }}'
+        material = 'def Material "{0}" {{\n token outputs:surface.connect = </World/{0}/s.outputs:surface>\n def Shader "s" {{\n uniform token info:id = "UsdPreviewSurface"\n token outputs:surface\n }}\n }}\n'
         subset = 'def GeomSubset "half" (prepend apiSchemas = ["MaterialBindingAPI"]) {\n uniform token elementType = "face"\n uniform token familyName = "materialBind"\n int[] indices = [1]\n rel material:binding = </World/B>\n }'
         both = material.format("A") + material.format("B")
         mesh = 'def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {{\n{}\n uniform token subdivisionScheme = "{}"\n rel material:binding = </World/A>\n{}\n }}'
@@ -231,7 +231,9 @@ class Meshes(StageTest):
         self.assertIn("at 0.125 s { points { - 0 0 1.25;", scene.scene_text)
         self.assertIn("time 0.075 s", scene.scene_text)
         self.assertIn("shutter 0.05 s", scene.scene_text)
-        velocities = f'{camera}\n def Mesh "m" {{\n{GRID}\n uniform token subdivisionScheme = "none"\n vector3f[] velocities = [{", ".join(["(0, 0, 8)"] * 6)}]\n }}'
+        sampled = GRID.replace("points = [", "points.timeSamples = { 1: [").replace("(2, 1, 0)]", "(2, 1, 0)] }")
+        values = ", ".join(["(0, 0, 8)"] * 6)
+        velocities = f'{camera}\n def Mesh "m" {{\n{sampled}\n uniform token subdivisionScheme = "none"\n vector3f[] velocities.timeSamples = {{ 1: [{values}] }}\n }}'
         # 8 units a second, a quarter of a frame of a tenth of a second on either side.
         scene = self.convert(world(velocities), header, frame=1)
         self.assertIn("at 0.075 s { points { - 0 0 -0.2;", scene.scene_text)

@@ -22,7 +22,7 @@ except ImportError as _fault:
 
 from .context import Context, Options
 from .convert import Converter
-from .files import write_atomically
+from .files import SideFiles, write_atomically
 from .report import Fate, Remark, Report, StageError
 from .scene_text import FileRef, Node, print_scene
 from .stage import open_stage, quiet
@@ -33,13 +33,10 @@ __all__ = ["Fate", "Options", "Remark", "Report", "Scene", "StageError", "load"]
 class Scene:
     """What a stage became: a scene in memory, with the files that it needs."""
 
-    def __init__(self, context: Context, nodes: Sequence[Node]) -> None:
-        self._context = context
+    def __init__(self, report: Report, files: SideFiles, nodes: Sequence[Node]) -> None:
+        self.report = report
+        self._files = files
         self._nodes = nodes
-
-    @property
-    def report(self) -> Report:
-        return self._context.report
 
     @property
     def scene_text(self) -> str:
@@ -49,7 +46,7 @@ class Scene:
     @property
     def files(self) -> dict[str, bytes]:
         """The files that are written beside the scene, by name."""
-        return {name: b"".join(bytes(p) for p in parts) for name, parts in self._context.files.parts.items()}
+        return {name: b"".join(bytes(p) for p in parts) for name, parts in self._files.parts.items()}
 
     def write(self, path: str | os.PathLike[str], force: bool = False) -> None:
         """Writes the scene, and its files into the folder NAME-files beside it.
@@ -59,7 +56,7 @@ class Scene:
         target = Path(path)
         folder = target.parent / f"{target.stem}-files"
         if not force:
-            for there in (target, *([folder] if self._context.files.parts else [])):
+            for there in (target, *([folder] if self._files.parts else [])):
                 if there.exists():
                     raise FileExistsError(f"`{there}` is there already: `--force` replaces it")
 
@@ -70,7 +67,7 @@ class Scene:
             return ref.path if near.startswith(os.path.join("..", "..", "..")) else near
 
         target.parent.mkdir(parents=True, exist_ok=True)
-        self._context.files.write(folder)
+        self._files.write(folder)
         write_atomically(target, [print_scene(self._nodes, resolve).encode()])
 
 
@@ -97,4 +94,4 @@ def load(
         nodes = Converter(context).run()
     if report.errors:
         raise StageError(f"{len(report.errors)} errors", report, 3 if all(e.code == "E0401" for e in report.errors) else 1)
-    return Scene(context, nodes)
+    return Scene(report, context.files, nodes)

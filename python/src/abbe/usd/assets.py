@@ -34,7 +34,10 @@ def _anchored(prim: Any, path: str, attribute: Any) -> str:
     """The path as seen from the layer that states it."""
     stack = attribute.GetPropertyStack() if attribute is not None else []
     layer = stack[0].layer if stack else prim.GetStage().GetRootLayer()
-    return str(layer.ComputeAbsolutePath(path))
+    found = str(layer.ComputeAbsolutePath(path))
+    if os.path.isabs(found) or not layer.realPath:
+        return found
+    return os.path.join(os.path.dirname(layer.realPath), path)
 
 
 def _similar(path: str) -> str:

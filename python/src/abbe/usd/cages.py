@@ -206,6 +206,11 @@ def cage_node(
             corner.key("sharpness", number(as_float(sharpness)))
     if holes:
         node.child("holes").numbers(holes)
+    displaced = [one.displacement for one in (look, *(own for _, _, own in subsets)) if one.displacement is not None]
+    if displaced:
+        node.adopt(displaced[0])
+    if any(one is not displaced[0] for one in displaced):
+        ctx.report.approximated(surface.prim, "displacements of several materials", "a shape has one: the first one's")
     return node
 
 

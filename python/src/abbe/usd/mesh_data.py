@@ -92,7 +92,7 @@ def moving_points(ctx: Context, geometry: Any, prim: Usd.Prim) -> list[tuple[flo
                 raise BadMesh("points that follow velocities are not finite")
             computed.append((key, points))
         if all(len(p) == len(computed[0][1]) for _, p in computed):
-            return computed
+            return computed if any((p != computed[0][1]).any() for _, p in computed) else computed[:1]
     found = [(key, read_points(ctx, geometry, key)) for key in keys]
     if any(len(points) != len(found[0][1]) for _, points in found):
         ctx.report.approximated(prim, "a change of its points", "it stands as it is when the shutter opens: points come or go")

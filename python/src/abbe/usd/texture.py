@@ -247,7 +247,10 @@ def write(node: Node, value: Value, uses: Uses, is_number: bool) -> None:
         if isinstance(value.over, str):
             at.set("over", value.over)
         else:
-            write(at.child("input"), value.over, uses, True)
+            over = value.over
+            if isinstance(over, Const):  # `input` takes no plain number
+                over = Product(over, Const((1.0,)))
+            write(at.child("input"), over, uses, True)
         for place, stop in value.stops:
             child = at.child("stop").numbers([as_float(place)])
             write(child, stop, uses, is_number)
