@@ -106,8 +106,9 @@ def seamless(surface: Surface, primvar: Primvar) -> bool:
     """Makes a primvar of corners one of points, where all corners of a point agree."""
     if not primvar.by_corner:
         return True
-    assert primvar.index is not None
     topology = surface.topology
+    if primvar.index is None:
+        primvar.index = np.arange(len(topology.corners))
     of_point = np.zeros(topology.point_count, np.int64)
     of_point[topology.corners] = primvar.index
     same = (primvar.values[of_point[topology.corners]] == primvar.values[primvar.index]).all()

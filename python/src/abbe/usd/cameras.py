@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
-from pxr import Usd, UsdGeom, UsdRender
+from pxr import Sdf, Usd, UsdGeom, UsdRender
 
 from .context import NIT_PER_ONE, Context, Matrix, Place, as_float, is_finite
 from .report import Fate
@@ -116,10 +116,11 @@ def _read_product(ctx: Context, product: Usd.Prim, s: Settings) -> None:
 def choose_camera(ctx: Context, s: Settings) -> Usd.Prim | None:
     """The camera that is rendered: that of the options, of the settings, else the first one."""
     wanted = ctx.options.camera or s.camera
-    cameras = [p for p in ctx.stage.Traverse(Usd.TraverseInstanceProxies()) if p.IsA(UsdGeom.Camera)]
+    cameras = [p for p in ctx.stage.Traverse() if p.IsA(UsdGeom.Camera)]  # not those in instances: there may be many
     if not wanted:
         return cameras[0] if cameras else None
-    found = [p for p in cameras if str(p.GetPath()) == wanted]
+    named = ctx.stage.GetPrimAtPath(wanted) if Sdf.Path.IsValidPathString(wanted) else None
+    found = [named] if named is not None and named.IsValid() and named.IsA(UsdGeom.Camera) else []
     found = found or [p for p in cameras if p.GetName() == wanted.strip("/")]
     if found:
         return found[0]

@@ -88,7 +88,7 @@ class Converter:
             return
         target = ctx.stage.GetEditTarget()
         ctx.stage.SetEditTarget(ctx.stage.GetSessionLayer())
-        interval = Gf.Interval(ctx.times.first, ctx.times.last)
+        interval = Gf.Interval.GetFullInterval()  # samples before and behind the shutter count, too
         for root in roots:
             if not UsdSkel.BakeSkinning(UsdSkel.Root(root), interval):
                 ctx.report.left_out(root, "its skins", "USD could not bake them: meshes stand as they are bound")

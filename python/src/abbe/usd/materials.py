@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdShade
 
-from . import nodes as _nodes  # noqa: F401  the readers of nodes enter themselves
+from . import nodes  # the readers of nodes enter themselves
 from .context import Context, as_float
 from .network import Network, node_kind
 from .report import Fate
 from .scene_text import Node
 from .surfaces import WRITERS, SurfaceWriter
-from .texture import Attribute, Const, Image, Ramp, Uses, Value, write
+from .texture import Attribute, Const, Uses, Value, write
 
 CONTEXTS = ["mtlx", ""]  # of surface outputs, the first one that can be read
 
@@ -110,28 +110,18 @@ class Materials:
         net = Network(self.ctx, material)
         source = material.ComputeDisplacementSource()[0]
         if source and node_kind(str(source.GetIdAttr().Get() or "")) != "UsdPreviewSurface":
-            value = net.value(source, "displacement")
-            factor = net.number(source, "scale", 1.0)
+            shader, factor = source, net.number(source, "scale", 1.0)
         elif kind == "UsdPreviewSurface":
-            value, factor = net.value(source or surface, "displacement"), 1.0
+            shader, factor = source or surface, 1.0
         else:
             return None
+        value, length, middle = _height(net, shader)
         if value is None or isinstance(value, Const):
             if value is not None and value.number:
-                self.ctx.report.left_out(material.GetPrim(), "a displacement that is the same everywhere", "it needs a texture here")
+                self.ctx.report.left_out(material.GetPrim(), "an even displacement", "it needs a texture here")
             return None
-        return self._displacement_node(material, value, factor, uses)
-
-    def _displacement_node(self, material: UsdShade.Material, value: Value, factor: float, uses: Uses) -> Node:
-        length, middle, inner = 1.0, 0.0, value
-        if isinstance(value, Ramp) and isinstance(value.over, Image) and len(value.stops) == 2:
-            # scale · map + bias = scale · (map - (-bias / scale))
-            (low_at, low), (high_at, high) = value.stops
-            if isinstance(low, Const) and isinstance(high, Const) and high_at - low_at == 1 and high != low:
-                length = high.number - low.number
-                middle, inner = -low.number / length, value.over
         node = Node("displacement").numbers([as_float(length * factor) * self.ctx.metres_per_scene_unit]).word("m")
-        write(node.child("map"), inner, uses, True)
+        write(node.child("map"), value, uses, True)
         node.set("midpoint", as_float(middle))
         return node
 
@@ -200,3 +190,17 @@ class Materials:
             node.child("emission-color", *glow.colour)
         self.nodes.append(node)
         return Look(name, emits=True)
+
+
+def _height(net: Network, shader: UsdShade.Shader) -> tuple[Value | None, float, float]:
+    """A displacement as length · (map - middle). Heights of pictures may lie beyond 0 and 1: s · map + b = s · (map + b / s)."""
+    found = net.source(shader, "displacement")
+    if found is not None and found[1]:
+        texture = UsdShade.Shader(found[0].GetPrim())
+        channel = {"r": 0, "g": 1, "b": 2, "a": 3}.get(found[1])
+        if "UsdUVTexture" in str(texture.GetIdAttr().Get()) and channel is not None:
+            image = nodes.picture(net, texture)
+            scale, bias = net.raw(texture, "scale", (1.0,) * 4)[channel], net.raw(texture, "bias", (0.0,) * 4)[channel]
+            if image is not None and scale != 0:
+                return dataclasses.replace(image, take=nodes.CHANNELS[found[1]]), scale, -bias / scale
+    return net.value(shader, "displacement"), 1.0, 0.0

@@ -45,12 +45,14 @@ def _polygon_parts(
 ) -> list[tuple[str, Surface, Look]]:
     """A mesh by materials: the faces of each subset, and those of none."""
     path = str(surface.prim.GetPath())
+    if not subsets:
+        return [(path, surface, look)]
     total = int(surface.faces.max()) + 1 if len(surface.faces) else 0
     owner = np.full(total, -1, np.int64)
     for i, (_, faces, _) in enumerate(subsets):
         owner[faces[faces < total]] = i
     owner = owner[surface.faces]
-    if not subsets or not (owner >= 0).any():
+    if not (owner >= 0).any():
         return [(path, surface, look)]
     parts = []
     if (owner < 0).any():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any
 
 import numpy as np
@@ -47,13 +48,18 @@ class BadMesh(Exception):
     """What is wrong with a mesh."""
 
 
+def all_finite(values: Array) -> bool:
+    """By a sum, which is not finite if one of them is not: without an array of answers."""
+    return math.isfinite(float(np.sum(values, dtype=np.float64)))
+
+
 def read_points(ctx: Context, geometry: Any, time: float) -> Array:
     """Points in single precision, checked. Raises BadMesh."""
     values = geometry.GetPointsAttr().Get(time)
     if values is None:
         return np.zeros((0, 3), np.float32)
     points = np.asarray(values, np.float32)
-    if not np.isfinite(points).all():
+    if not all_finite(points):
         bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
         raise BadMesh(f"point {bad} is not finite")
     return points
@@ -88,7 +94,7 @@ def moving_points(ctx: Context, geometry: Any, prim: Usd.Prim) -> list[tuple[flo
         computed = []
         for key in keys:
             points = np.asarray(geometry.ComputePointsAtTime(key, key if times.animated else base), np.float32)
-            if not np.isfinite(points).all():
+            if not all_finite(points):
                 raise BadMesh("points that follow velocities are not finite")
             computed.append((key, points))
         if all(len(p) == len(computed[0][1]) for _, p in computed):
@@ -111,7 +117,7 @@ def to_primvar(name: str, values: Array, indices: Array | None, interpolation: s
     have = len(values) if indices is None else len(indices)
     if have < need:
         raise BadMesh(f"primvar {name} ({interpolation}) has {have} values for {need}")
-    if values.dtype.kind == "f" and not np.isfinite(values).all():
+    if values.dtype.kind == "f" and not all_finite(values):
         raise BadMesh(f"a value of primvar {name} is not finite")
     rows = values.astype(np.float32, copy=False).reshape(len(values), -1)
     if interpolation == "constant":
@@ -121,7 +127,7 @@ def to_primvar(name: str, values: Array, indices: Array | None, interpolation: s
         of_face = np.arange(face_count, dtype=np.int32) if indices is None else indices[:face_count]
         return Primvar(rows, np.repeat(of_face, topology.counts), True)
     if interpolation == "faceVarying":
-        return Primvar(rows, np.arange(corner_count, dtype=np.int32) if indices is None else indices[:corner_count], True)
+        return Primvar(rows[:corner_count] if indices is None else rows, None if indices is None else indices[:corner_count], True)
     return Primvar(rows, indices, False)
 
 
@@ -166,22 +172,28 @@ def of_faces(topology: Topology, keep: Array) -> tuple[Topology, Array]:
     return Topology(topology.counts[keep], topology.corners[kept_corners], topology.point_count), kept_corners
 
 
+def _words(rows: Array) -> list[Array]:
+    """Rows of single precision as columns of bits, two numbers at a time where that can be."""
+    if rows.shape[1] == 2:
+        return [np.ascontiguousarray(rows, np.float32).view(np.uint64).reshape(-1)]
+    return [np.ascontiguousarray(rows[:, i], np.float32).view(np.uint32) for i in range(rows.shape[1])]
+
+
 def weld(topology: Topology, primvars: list[Primvar]) -> tuple[Array, Array]:
     """Splits points at whose corners primvars differ. Returns the vertex of each corner, and one corner of each vertex.
 
     A vertex is made for each point from one of its corners. The few corners that disagree with it are sorted out after.
     """
     corners = topology.corners
-    representative = np.full(topology.point_count, -1, np.int64)
-    representative[corners] = np.arange(len(corners))
+    representative = np.full(topology.point_count, -1, np.int32)
+    representative[corners] = np.arange(len(corners), dtype=np.int32)
     mine = representative[corners]
     differs = np.zeros(len(corners), bool)
     for primvar in primvars:
-        index = primvar.index if primvar.index is not None else np.arange(len(corners))
-        a, b = index, index[mine]
-        doubtful = np.flatnonzero(a != b)
-        unequal = (primvar.values[a[doubtful]] != primvar.values[b[doubtful]]).any(axis=1)
-        differs[doubtful[unequal]] = True
+        index = primvar.index
+        a, b = (None, mine) if index is None else (index, index[mine])
+        for column in _words(primvar.values):
+            differs |= (column if a is None else column[a]) != column[b]
     used = representative[representative >= 0]
     vertex = np.cumsum(representative >= 0) - 1
     vertex_of_corner = vertex[corners]
@@ -189,8 +201,7 @@ def weld(topology: Topology, primvars: list[Primvar]) -> tuple[Array, Array]:
     if len(odd):
         columns = [corners[odd].astype(np.float64)[:, None]]
         for p in primvars:
-            index = p.index if p.index is not None else np.arange(len(corners))
-            columns.append(p.values[index[odd]].astype(np.float64))
+            columns.append(p.values[odd if p.index is None else p.index[odd]].astype(np.float64))
         _, first, inverse = np.unique(np.hstack(columns) + 0.0, axis=0, return_index=True, return_inverse=True)
         vertex_of_corner = vertex_of_corner.copy()
         vertex_of_corner[odd] = len(used) + inverse.reshape(-1)
@@ -288,8 +299,8 @@ def _select(surface: Surface, corners: Array) -> None:
     """Takes these corners in this order, in all that belongs to corners."""
     done: set[int] = set()
     for primvar in surface.by_corner():
-        if id(primvar) not in done and primvar.index is not None:
-            primvar.index = primvar.index[corners]
+        if id(primvar) not in done:
+            primvar.index = corners if primvar.index is None else primvar.index[corners]
             done.add(id(primvar))
 
 
@@ -298,9 +309,9 @@ def part(surface: Surface, faces: Array) -> Surface:
     topology, kept = of_faces(surface.topology, faces)
 
     def taken(p: Primvar | None) -> Primvar | None:
-        if p is None or not p.by_corner or p.index is None:
+        if p is None or not p.by_corner:
             return p
-        return Primvar(p.values, p.index[kept], True)
+        return Primvar(p.values, kept if p.index is None else p.index[kept], True)
 
     normals = [n for n in (taken(p) for p in surface.normals) if n is not None]
     attributes = {k: v for k, v in ((k, taken(p)) for k, p in surface.attributes.items()) if v is not None}
@@ -329,8 +340,8 @@ def _columns(surface: Surface, key: int, point: Array | None, corner: Array | No
 
     def add(primvar: Primvar, names: list[str]) -> None:
         if primvar.by_corner:
-            assert primvar.index is not None and corner is not None
-            rows = primvar.values[primvar.index[corner]]
+            assert corner is not None
+            rows = primvar.values[corner if primvar.index is None else primvar.index[corner]]
         else:
             rows = primvar.at_points(surface.topology.point_count)
             rows = rows if point is None else rows[point]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import gc
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -105,14 +106,14 @@ def _composition(stage: Usd.Stage, report: Report) -> None:
 
 
 def _kind_of(error: Any) -> tuple[str, str]:
+    """The code of an error of composition, and what is wrong. Its message names the file between @."""
     kind = error.errorType
-    asset = str(getattr(error, "assetPath", "") or getattr(error, "resolvedAssetPath", ""))
+    asset = re.search(r"@([^@]+)@", str(error))
+    name = asset[1] if asset else "?"
     if kind == Pcp.ErrorType_InvalidAssetPath:
-        return "E0401", f"there is no layer `{asset}`"
+        return "E0401", f"there is no layer `{name}`"
     if kind == Pcp.ErrorType_InvalidSublayerPath:
-        return "E0401", f"there is no sublayer `{getattr(error, 'sublayerPath', asset)}`"
+        return "E0401", f"there is no sublayer `{name}`"
     if kind in (Pcp.ErrorType_ArcCycle, Pcp.ErrorType_SublayerCycle):
         return "E0802", "a cycle of references"
-    if kind == Pcp.ErrorType_UnresolvedPrimPath:
-        return "E0802", f"there is no prim `{getattr(error, 'unresolvedPath', '')}` to refer to"
     return "E0802", "the stage does not compose"

@@ -42,6 +42,9 @@ def _fields(ctx: Context, prim: Usd.Prim) -> list[tuple[str, FileRef, str]]:
         if asset.GetFieldIndexAttr().Get(ctx.times.first):
             ctx.report.left_out(field, "fieldIndex", "the first grid of the name is taken")
         role = ROLES.get(name) or ROLES.get(grid)
+        if role in [r for r, _, _ in found]:
+            ctx.report.left_out(field, f"the field {name}", f"there is a field of {role} already")
+            continue
         if role is None:
             ctx.report.left_out(field, f"the field {name}", f"{', '.join(sorted(ROLES))} have a meaning")
             continue
