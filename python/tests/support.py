@@ -22,9 +22,7 @@ NIT = 1 / 72983.0  # what a nit shows without an exposure
 HEADER = '#usda 1.0\n(\n    upAxis = "Y"\n    metersPerUnit = 1\n    defaultPrim = "World"\n)\n'
 
 # AP0, in which pictures are written, to XYZ and to linear Rec. 709, without adaptation of the white.
-XYZ_OF_AP0 = np.array(
-    [[0.9525523959, 0.0, 0.0000936786], [0.3439664498, 0.7281660966, -0.0721325464], [0.0, 0.0, 1.0088251844]]
-)
+XYZ_OF_AP0 = np.array([[0.9525523959, 0.0, 0.0000936786], [0.3439664498, 0.7281660966, -0.0721325464], [0.0, 0.0, 1.0088251844]])
 REC709_OF_XYZ = np.array(
     [[3.2409699419, -1.5373831776, -0.4986107603], [-0.9692436363, 1.8759675015, 0.0415550574], [0.0556300797, -0.2039769589, 1.0569715142]]
 )

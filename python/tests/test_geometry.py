@@ -63,7 +63,9 @@ class Shapes(StageTest):
             self.assertGreater(normal.max(), 0)
 
     def test_units_and_the_up_axis(self) -> None:
-        body = world('def Sphere "s" { double radius = 2\n double3 xformOp:translate = (0, 0, 10)\n uniform token[] xformOpOrder = ["xformOp:translate"]\n }')
+        body = world(
+            'def Sphere "s" { double radius = 2\n double3 xformOp:translate = (0, 0, 10)\n uniform token[] xformOpOrder = ["xformOp:translate"]\n }'
+        )
         for metres in (0.01, 0.001, 1.0, 0.0254, 0.25):
             scene = self.convert(body, HEADER.replace("metersPerUnit = 1", f"metersPerUnit = {metres}").replace('"Y"', '"Z"'))
             self.assert_bounds([-2 * metres, -2 * metres, 8 * metres], [2 * metres, 2 * metres, 12 * metres])
@@ -125,7 +127,7 @@ class Meshes(StageTest):
         self.assert_bounds([0, 0, 0], [2, 1, 0])
 
     def test_seams_split_points_and_nothing_else(self) -> None:
-        st = "texCoord2f[] primvars:st = [(0, 0), (0.5, 0), (0.5, 1), (0, 1), {}, (1, 0), (1, 1), {}] (interpolation = \"faceVarying\")"
+        st = 'texCoord2f[] primvars:st = [(0, 0), (0.5, 0), (0.5, 1), (0, 1), {}, (1, 0), (1, 1), {}] (interpolation = "faceVarying")'
         scene = self.convert(polygons(st.format("(0.5, 0)", "(0.5, 1)")))
         self.assertIn("faces { - 0 1 2 3; - 1 4 5 2 }", scene.scene_text)
         self.assertIn("uvs { - 0 0; - 0.5 0; - 0.5 1; - 0 1; - 1 0; - 1 1 }", scene.scene_text)
@@ -146,14 +148,22 @@ class Meshes(StageTest):
         self.assertEqual(self.info()["quads"], 1)
 
     def test_normals(self) -> None:
-        scene = self.convert(polygons('normal3f[] normals = [(0, 0, 1), (0, 1, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1)] (interpolation = "vertex")'))
+        scene = self.convert(
+            polygons('normal3f[] normals = [(0, 0, 1), (0, 1, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1)] (interpolation = "vertex")')
+        )
         (content,) = scene.files.values()
         rows = np.frombuffer(content.split(b"end_header\n")[1][: 6 * 24], "<f4").reshape(6, 6)
         np.testing.assert_array_equal(rows[1], [1, 0, 0, 0, 1, 1])
 
     def test_display_colour_of_all_interpolations(self) -> None:
         red, blue = "(1, 0, 0)", "(0, 0, 1)"
-        cases = {"constant": [red], "uniform": [red, blue], "vertex": [red, red, blue, blue, red, blue], "varying": [red] * 5 + [blue], "faceVarying": [red] * 4 + [blue] * 4}
+        cases = {
+            "constant": [red],
+            "uniform": [red, blue],
+            "vertex": [red, red, blue, blue, red, blue],
+            "varying": [red] * 5 + [blue],
+            "faceVarying": [red] * 4 + [blue] * 4,
+        }
         for interpolation, values in cases.items():
             scene = self.convert(polygons(f'color3f[] primvars:displayColor = [{", ".join(values)}] (interpolation = "{interpolation}")'))
             if interpolation == "constant":
@@ -191,7 +201,14 @@ class Meshes(StageTest):
             uniform token faceVaryingLinearInterpolation = "boundaries"
         """
         scene = self.convert(cage(extra.format("catmullClark")))
-        for part in ("crease 0 1 4 sharpness=2.5", "crease 1 2\n", "corner 3 sharpness=4", "holes 1", "boundary edge-only", "texture-boundary boundaries"):
+        for part in (
+            "crease 0 1 4 sharpness=2.5",
+            "crease 1 2\n",
+            "corner 3 sharpness=4",
+            "holes 1",
+            "boundary edge-only",
+            "texture-boundary boundaries",
+        ):
             self.assertIn(part, scene.scene_text)
         self.assertIn("scheme bilinear", self.convert(cage(extra.format("bilinear"))).scene_text)
         self.remark(self.convert(cage(extra.format("loop"))), "the scheme loop")
@@ -224,7 +241,9 @@ class Meshes(StageTest):
 
     def test_deformation_and_velocities(self) -> None:
         camera = 'def Camera "c" { double shutter:open = -0.25\n double shutter:close = 0.25\n double3 xformOp:translate = (0, 0, 9)\n uniform token[] xformOpOrder = ["xformOp:translate"]\n }'
-        moved = GRID.replace("point3f[] points = [", "point3f[] points.timeSamples = { 0: [").replace("(2, 1, 0)]", "(2, 1, 0)], 2: [(0, 0, 2), (1, 0, 2), (1, 1, 2), (0, 1, 2), (2, 0, 2), (2, 1, 2)] }")
+        moved = GRID.replace("point3f[] points = [", "point3f[] points.timeSamples = { 0: [").replace(
+            "(2, 1, 0)]", "(2, 1, 0)], 2: [(0, 0, 2), (1, 0, 2), (1, 1, 2), (0, 1, 2), (2, 0, 2), (2, 1, 2)] }"
+        )
         header = HEADER.replace("metersPerUnit", "timeCodesPerSecond = 10\n    metersPerUnit")
         scene = self.convert(world(f'{camera}\n def Mesh "m" {{\n{moved}\n uniform token subdivisionScheme = "none"\n }}'), header, frame=1)
         self.assertIn("at 0.075 s { points { - 0 0 0.75;", scene.scene_text)
@@ -247,7 +266,8 @@ class Meshes(StageTest):
             "-4 corners": GRID.replace("[4, 4]", "[4, -4]"),
             "point 5 is not finite": GRID.replace("(2, 1, 0)", "(2, nan, 0)"),
             "primvar st (vertex) has 1 values for 6": GRID + 'texCoord2f[] primvars:st = [(0, 0)] (interpolation = "vertex")',
-            "leave its 1 values": GRID + 'texCoord2f[] primvars:st = [(0, 0)] (interpolation = "vertex")\n int[] primvars:st:indices = [0, 0, 0, 0, 0, 7]',
+            "leave its 1 values": GRID
+            + 'texCoord2f[] primvars:st = [(0, 0)] (interpolation = "vertex")\n int[] primvars:st:indices = [0, 0, 0, 0, 0, 7]',
             "holeIndices names face 7": GRID + "int[] holeIndices = [7]",
             "creaseIndices names point 70": GRID + "int[] creaseIndices = [0, 70]\n int[] creaseLengths = [2]\n float[] creaseSharpnesses = [1]",
             "creaseSharpnesses has 3": GRID + "int[] creaseIndices = [0, 1]\n int[] creaseLengths = [2]\n float[] creaseSharpnesses = [1, 1, 1]",
@@ -296,7 +316,11 @@ class CurvesAndPoints(StageTest):
         np.testing.assert_allclose(self.strand_points(scene)[:, 3], [0.1, 0.2, 0.3, 0.4], rtol=1e-6)
 
     def test_stretched_curves_are_instances(self) -> None:
-        scene = self.convert(self.curves('float[] widths = [0.2] (interpolation = "constant")\n float3 xformOp:scale = (1, 3, 1)\n uniform token[] xformOpOrder = ["xformOp:scale"]'))
+        scene = self.convert(
+            self.curves(
+                'float[] widths = [0.2] (interpolation = "constant")\n float3 xformOp:scale = (1, 3, 1)\n uniform token[] xformOpOrder = ["xformOp:scale"]'
+            )
+        )
         self.assertIn("instance", scene.scene_text)
         self.assertAlmostEqual(self.info()["bounds_m"]["upper"][1], 0.3, delta=0.03)
 

@@ -219,7 +219,7 @@ class Domes(StageTest):
         yaw, pitch = math.degrees(math.atan2(-x, -z)), math.degrees(math.asin(y / math.sqrt(x * x + y * y + z * z)))
         if up == "Z":  # a camera that looks along -z is first brought to look along y
             yaw, pitch = math.degrees(math.atan2(-x, y)), math.degrees(math.asin(z / math.sqrt(x * x + y * y + z * z)))
-        first = 'double xformOp:rotateX:up = 90\n' if up == "Z" else 'double xformOp:rotateX:up = 0\n'
+        first = "double xformOp:rotateX:up = 90\n" if up == "Z" else "double xformOp:rotateX:up = 0\n"
         axis = "Z" if up == "Z" else "Y"
         body = f"""def Xform "World" {{
             def Camera "cam" {{

@@ -7,8 +7,9 @@ import zlib
 from pathlib import Path
 
 import numpy as np
-from abbe import usd
 from support import LOOKING_DOWN, StageTest
+
+from abbe import usd
 
 FLOOR = """
     def Mesh "floor" (prepend apiSchemas = ["MaterialBindingAPI"]) {
@@ -84,14 +85,16 @@ class MaterialTest(StageTest):
 
 class Preview(MaterialTest):
     def test_parameters(self) -> None:
-        scene = self.convert(preview("""
+        scene = self.convert(
+            preview("""
             color3f inputs:diffuseColor = (0.8, 0.1, 0.2)
             float inputs:metallic = 0.5
             float inputs:roughness = 0.25
             float inputs:ior = 1.4
             float inputs:clearcoat = 0.7
             float inputs:clearcoatRoughness = 0.2
-        """))
+        """)
+        )
         self.has(scene, "openpbr", "base-color rgb 0.8 0.1 0.2", "base-metalness 0.5", "specular-roughness 0.25", "specular-ior 1.4",
                  "coat-weight 0.7", "coat-roughness 0.2", "coat-ior 1.5", "coat-darkening 0")  # fmt: skip
         self.assertEqual(scene.report.remarks, [])
@@ -101,7 +104,9 @@ class Preview(MaterialTest):
 
     def test_emission_is_in_nits(self) -> None:
         # A light of its own colour; the sky is taken away.
-        text = preview("color3f inputs:emissiveColor = (4, 2, 1)\n color3f inputs:diffuseColor = (0, 0, 0)\n float inputs:ior = 1.0").replace('def DomeLight "sky" { }', "")
+        text = preview("color3f inputs:emissiveColor = (4, 2, 1)\n color3f inputs:diffuseColor = (0, 0, 0)\n float inputs:ior = 1.0").replace(
+            'def DomeLight "sky" { }', ""
+        )
         self.convert(text)
         np.testing.assert_allclose(self.render(16)[4:12, 4:12].mean(axis=(0, 1)), [4, 2, 1], rtol=0.03)
 
@@ -120,16 +125,30 @@ class Preview(MaterialTest):
 
     def test_textures(self) -> None:
         self.picture()
-        texture = node("t", "UsdUVTexture", 'asset inputs:file = @map.png@\n float2 inputs:st.connect = </World/M/st.outputs:result>\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"\n token inputs:sourceColorSpace = "sRGB"', "float3 outputs:rgb\n float outputs:g")
+        texture = node(
+            "t",
+            "UsdUVTexture",
+            'asset inputs:file = @map.png@\n float2 inputs:st.connect = </World/M/st.outputs:result>\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"\n token inputs:sourceColorSpace = "sRGB"',
+            "float3 outputs:rgb\n float outputs:g",
+        )
         scene = self.convert(preview("color3f inputs:diffuseColor.connect = </World/M/t.outputs:rgb>", texture + READER))
         self.has(scene, "space=srgb_rec709_scene")
         raw = texture.replace("sRGB", "raw")
-        self.has(self.convert(preview("float inputs:roughness.connect = </World/M/t.outputs:g>", raw + READER)), "specular-roughness channel { take green; of image", "space=data")
+        self.has(
+            self.convert(preview("float inputs:roughness.connect = </World/M/t.outputs:g>", raw + READER)),
+            "specular-roughness channel { take green; of image",
+            "space=data",
+        )
 
     def test_a_picture_shows_its_colour(self) -> None:
         # sRGB 188 is 0.503. Under an even sky of 1 a matte floor shows its colour; gloss of the index 1 is none.
         self.picture(colour=(188, 188, 188))
-        texture = node("t", "UsdUVTexture", 'asset inputs:file = @map.png@\n token inputs:sourceColorSpace = "sRGB"\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"', "float3 outputs:rgb")
+        texture = node(
+            "t",
+            "UsdUVTexture",
+            'asset inputs:file = @map.png@\n token inputs:sourceColorSpace = "sRGB"\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"',
+            "float3 outputs:rgb",
+        )
         self.convert(preview("color3f inputs:diffuseColor.connect = </World/M/t.outputs:rgb>\n float inputs:ior = 1.0", texture))
         np.testing.assert_allclose(self.render(64)[4:12, 4:12].mean(axis=(0, 1)), [0.503] * 3, rtol=0.01)
 
@@ -146,8 +165,18 @@ class Preview(MaterialTest):
 
     def test_wraps_transform_and_coordinates(self) -> None:
         self.picture()
-        texture = node("t", "UsdUVTexture", 'asset inputs:file = @map.png@\n float2 inputs:st.connect = </World/M/x.outputs:result>\n token inputs:wrapS = "mirror"\n token inputs:wrapT = "clamp"', "float3 outputs:rgb")
-        turned = node("x", "UsdTransform2d", "float2 inputs:in.connect = </World/M/st.outputs:result>\n float2 inputs:scale = (4, 2)\n float inputs:rotation = 30\n float2 inputs:translation = (0.5, 0.25)", "float2 outputs:result")
+        texture = node(
+            "t",
+            "UsdUVTexture",
+            'asset inputs:file = @map.png@\n float2 inputs:st.connect = </World/M/x.outputs:result>\n token inputs:wrapS = "mirror"\n token inputs:wrapT = "clamp"',
+            "float3 outputs:rgb",
+        )
+        turned = node(
+            "x",
+            "UsdTransform2d",
+            "float2 inputs:in.connect = </World/M/st.outputs:result>\n float2 inputs:scale = (4, 2)\n float inputs:rotation = 30\n float2 inputs:translation = (0.5, 0.25)",
+            "float2 outputs:result",
+        )
         scene = self.convert(preview("color3f inputs:diffuseColor.connect = </World/M/t.outputs:rgb>", texture + turned + READER))
         self.has(scene, "placed { map image", "wrap mirror", "scale 4 2 rotate 30 deg offset 0.5 0.25")
         self.remark(scene, "different wrap modes")
@@ -157,8 +186,18 @@ class Preview(MaterialTest):
         pixels = np.zeros((8, 8, 3))
         pixels[:, 4:] = 255
         write_png(self.folder / "map.png", pixels)
-        texture = node("t", "UsdUVTexture", 'asset inputs:file = @map.png@\n float2 inputs:st.connect = </World/M/x.outputs:result>\n token inputs:wrapS = "clamp"\n token inputs:wrapT = "clamp"', "float3 outputs:rgb")
-        turned = node("x", "UsdTransform2d", "float2 inputs:in.connect = </World/M/st.outputs:result>\n float2 inputs:scale = (0.3, 1)\n float2 inputs:translation = (0.65, 0)", "float2 outputs:result")
+        texture = node(
+            "t",
+            "UsdUVTexture",
+            'asset inputs:file = @map.png@\n float2 inputs:st.connect = </World/M/x.outputs:result>\n token inputs:wrapS = "clamp"\n token inputs:wrapT = "clamp"',
+            "float3 outputs:rgb",
+        )
+        turned = node(
+            "x",
+            "UsdTransform2d",
+            "float2 inputs:in.connect = </World/M/st.outputs:result>\n float2 inputs:scale = (0.3, 1)\n float2 inputs:translation = (0.65, 0)",
+            "float2 outputs:result",
+        )
         self.convert(preview("color3f inputs:diffuseColor.connect = </World/M/t.outputs:rgb>\n float inputs:ior = 1.0", texture + turned + READER))
         np.testing.assert_allclose(self.render(64)[4:12, 4:12].mean(axis=(0, 1)), [1] * 3, rtol=0.01)
 
@@ -170,14 +209,24 @@ class Preview(MaterialTest):
 
     def test_normal_map(self) -> None:
         self.picture(colour=(128, 128, 255))
-        texture = node("t", "UsdUVTexture", 'asset inputs:file = @map.png@\n float4 inputs:scale = (2, 2, 2, 1)\n float4 inputs:bias = (-1, -1, -1, 0)\n token inputs:sourceColorSpace = "raw"\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"', "float3 outputs:rgb")
+        texture = node(
+            "t",
+            "UsdUVTexture",
+            'asset inputs:file = @map.png@\n float4 inputs:scale = (2, 2, 2, 1)\n float4 inputs:bias = (-1, -1, -1, 0)\n token inputs:sourceColorSpace = "raw"\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"',
+            "float3 outputs:rgb",
+        )
         scene = self.convert(preview("normal3f inputs:normal.connect = </World/M/t.outputs:rgb>", texture))
         self.has(scene, "normal image", "space=data")
         self.assertEqual(scene.report.remarks, [])
 
     def test_displacement(self) -> None:
         self.picture(colour=(255, 255, 255))
-        texture = node("t", "UsdUVTexture", 'asset inputs:file = @map.png@\n float4 inputs:scale = (0.5, 1, 1, 1)\n float4 inputs:bias = (-0.1, 0, 0, 0)\n token inputs:sourceColorSpace = "raw"\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"', "float outputs:r")
+        texture = node(
+            "t",
+            "UsdUVTexture",
+            'asset inputs:file = @map.png@\n float4 inputs:scale = (0.5, 1, 1, 1)\n float4 inputs:bias = (-0.1, 0, 0, 0)\n token inputs:sourceColorSpace = "raw"\n token inputs:wrapS = "repeat"\n token inputs:wrapT = "repeat"',
+            "float outputs:r",
+        )
         more = "token outputs:displacement.connect = </World/M/s.outputs:displacement>"
         scene = self.convert(preview("float inputs:displacement.connect = </World/M/t.outputs:r>\n token outputs:displacement", texture, more))
         self.assertIn("scheme bilinear", scene.scene_text)
@@ -190,7 +239,7 @@ class Preview(MaterialTest):
         reader = node("p", "UsdPrimvarReader_float", 'string inputs:varname = "wear"', "float outputs:result")
         scene = self.convert(preview("float inputs:roughness.connect = </World/M/p.outputs:result>", reader))
         self.has(scene, 'specular-roughness attribute "wear"')
-        self.assertIn('attribute "wear" 0 0.25 0.5 0.75', " ".join(scene.scene_text.split()).replace('attribute wear', 'attribute "wear"'))
+        self.assertIn('attribute "wear" 0 0.25 0.5 0.75', " ".join(scene.scene_text.split()).replace("attribute wear", 'attribute "wear"'))
 
     def test_faults_of_networks(self) -> None:
         loop = node("a", "UsdTransform2d", "float2 inputs:in.connect = </World/M/b.outputs:result>", "float2 outputs:result")
@@ -210,7 +259,10 @@ class Preview(MaterialTest):
 
 class MaterialX(MaterialTest):
     def test_open_pbr(self) -> None:
-        scene = self.convert(mtlx("open_pbr_surface", """
+        scene = self.convert(
+            mtlx(
+                "open_pbr_surface",
+                """
             color3f inputs:base_color = (0.5, 0.25, 0.125)
             float inputs:base_metalness = 1
             color3f inputs:specular_color = (0.9, 0.8, 0.7)
@@ -220,24 +272,33 @@ class MaterialX(MaterialTest):
             float inputs:fuzz_weight = 0.3
             float inputs:thin_film_weight = 1
             float inputs:thin_film_thickness = 0.4
-        """))
+        """,
+            )
+        )
         self.has(scene, "base-color rgb 0.5 0.25 0.125", "base-metalness 1", "specular-color rgb 0.9 0.8 0.7", "specular-roughness 0.1",
                  "coat-weight 1", "coat-ior 1.3", "fuzz-weight 0.3", "thin-film-thickness 400 nm")  # fmt: skip
         self.assertEqual(scene.report.remarks, [])
 
     def test_lengths_are_those_of_the_stage(self) -> None:
         inputs = "float inputs:transmission_weight = 1\n color3f inputs:transmission_color = (0.5, 0.9, 0.9)\n float inputs:transmission_depth = 3"
-        self.has(self.convert(mtlx("open_pbr_surface", inputs)), "transmission-weight 1", "transmission-depth 3 m", "transmission-color rgb 0.5 0.9 0.9")
+        self.has(
+            self.convert(mtlx("open_pbr_surface", inputs)), "transmission-weight 1", "transmission-depth 3 m", "transmission-color rgb 0.5 0.9 0.9"
+        )
         inputs = "float inputs:subsurface_weight = 1\n float inputs:subsurface_radius = 0.01\n color3f inputs:subsurface_radius_scale = (1, 0.4, 0.2)"
         self.has(self.convert(mtlx("open_pbr_surface", inputs), strict=False), "subsurface-radius 0.01 m", "subsurface-radius-scale rgb 1 0.4 0.2")
 
     def test_emission_of_open_pbr_is_in_nits(self) -> None:
-        text = mtlx("open_pbr_surface", "float inputs:emission_luminance = 3\n color3f inputs:emission_color = (1, 0.5, 0.25)").replace('def DomeLight "sky" { }', "")
+        text = mtlx("open_pbr_surface", "float inputs:emission_luminance = 3\n color3f inputs:emission_color = (1, 0.5, 0.25)").replace(
+            'def DomeLight "sky" { }', ""
+        )
         self.convert(text)
         np.testing.assert_allclose(self.render(16)[4:12, 4:12].mean(axis=(0, 1)), [3, 1.5, 0.75], rtol=0.03)
 
     def test_standard_surface(self) -> None:
-        scene = self.convert(mtlx("standard_surface", """
+        scene = self.convert(
+            mtlx(
+                "standard_surface",
+                """
             float inputs:base = 0.9
             color3f inputs:base_color = (0.5, 0.25, 0.125)
             float inputs:specular_IOR = 1.6
@@ -245,13 +306,17 @@ class MaterialX(MaterialTest):
             float inputs:thin_film_thickness = 300
             color3f inputs:emission_color = (1, 0.5, 0.25)
             float inputs:emission = 2
-        """))
+        """,
+            )
+        )
         self.has(scene, "base-weight 0.9", "specular-roughness 0.2", "specular-ior 1.6", "coat-weight 0.5", "coat-roughness 0.1", "coat-ior 1.5",
                  "thin-film-thickness 300 nm", "emission-luminance 2 nits", "emission-color rgb 1 0.5 0.25")  # fmt: skip
 
     def shown(self, nodes: str, output: str = "n.outputs:out") -> np.ndarray:
         """What a matte floor of that colour shows under a sky of 1."""
-        scene = self.convert(mtlx("open_pbr_surface", f"float inputs:specular_weight = 0\n color3f inputs:base_color.connect = </World/M/{output}>", nodes))
+        scene = self.convert(
+            mtlx("open_pbr_surface", f"float inputs:specular_weight = 0\n color3f inputs:base_color.connect = </World/M/{output}>", nodes)
+        )
         self.last = scene
         return self.render(64)
 
@@ -269,7 +334,9 @@ class MaterialX(MaterialTest):
             np.testing.assert_allclose(seen[4:12, 4:12].mean(axis=(0, 1)), [expected] * 3, rtol=0.01, err_msg=kind)
         constants = node("n", "ND_add_color3", "color3f inputs:in1 = (0.25, 0.25, 0.25)\n color3f inputs:in2 = (0.5, 0.5, 0.5)")
         np.testing.assert_allclose(self.shown(constants)[4:12, 4:12].mean(axis=(0, 1)), [0.75] * 3, rtol=0.01)
-        mixed = node("n", "ND_mix_color3", "color3f inputs:fg.connect = </World/M/i.outputs:out>\n color3f inputs:bg = (1, 1, 1)\n float inputs:mix = 0.25")
+        mixed = node(
+            "n", "ND_mix_color3", "color3f inputs:fg.connect = </World/M/i.outputs:out>\n color3f inputs:bg = (1, 1, 1)\n float inputs:mix = 0.25"
+        )
         np.testing.assert_allclose(self.shown(image + mixed)[4:12, 4:12].mean(axis=(0, 1)), [0.75 + 0.25 * g] * 3, rtol=0.01)
 
     def test_numbers_of_pictures(self) -> None:
@@ -292,11 +359,18 @@ class MaterialX(MaterialTest):
 
     def test_tiled_image_and_place2d(self) -> None:
         self.picture()
-        tiled = node("n", "ND_tiledimage_color3", "asset inputs:file = @map.png@\n float2 inputs:uvtiling = (4, 3)\n float2 inputs:uvoffset = (0.5, 0)")
+        tiled = node(
+            "n", "ND_tiledimage_color3", "asset inputs:file = @map.png@\n float2 inputs:uvtiling = (4, 3)\n float2 inputs:uvoffset = (0.5, 0)"
+        )
         self.shown(tiled)
         self.assertIn("scale 4 3", self.last.scene_text)
         self.assertIn("offset -0.5 0", self.last.scene_text)
-        place = node("p", "ND_place2d_vector2", "float2 inputs:texcoord.connect = </World/M/t.outputs:out>\n float2 inputs:scale = (0.5, 0.25)\n float inputs:rotate = 30\n float2 inputs:offset = (0.1, 0.2)", "float2 outputs:out")
+        place = node(
+            "p",
+            "ND_place2d_vector2",
+            "float2 inputs:texcoord.connect = </World/M/t.outputs:out>\n float2 inputs:scale = (0.5, 0.25)\n float inputs:rotate = 30\n float2 inputs:offset = (0.1, 0.2)",
+            "float2 outputs:out",
+        )
         coords = node("t", "ND_texcoord_vector2", "", "float2 outputs:out")
         image = node("n", "ND_image_color3", "asset inputs:file = @map.png@\n float2 inputs:texcoord.connect = </World/M/p.outputs:out>")
         self.shown(image + place + coords)
@@ -312,20 +386,32 @@ class MaterialX(MaterialTest):
         ramp = node("n", "ND_ramptb_color3", "color3f inputs:valuet = (1, 1, 1)\n color3f inputs:valueb = (0, 0, 0)")
         seen = self.shown(ramp)[:, :, 1]
         np.testing.assert_allclose(seen[3, 4:12].mean(), 1 - 3.5 / 16, atol=0.01)
-        corners = node("n", "ND_ramp4_color3", "color3f inputs:valuetl = (0, 0, 0)\n color3f inputs:valuetr = (1, 1, 1)\n color3f inputs:valuebl = (0, 0, 0)\n color3f inputs:valuebr = (0, 0, 0)")
+        corners = node(
+            "n",
+            "ND_ramp4_color3",
+            "color3f inputs:valuetl = (0, 0, 0)\n color3f inputs:valuetr = (1, 1, 1)\n color3f inputs:valuebl = (0, 0, 0)\n color3f inputs:valuebr = (0, 0, 0)",
+        )
         self.assertAlmostEqual(float(self.shown(corners)[3, 12, 1]), (12.5 / 16) ** 2, delta=0.02)
-        split = node("n", "ND_splitlr_color3", "color3f inputs:valuel = (0.25, 0.25, 0.25)\n color3f inputs:valuer = (0.75, 0.75, 0.75)\n float inputs:center = 0.5")
+        split = node(
+            "n",
+            "ND_splitlr_color3",
+            "color3f inputs:valuel = (0.25, 0.25, 0.25)\n color3f inputs:valuer = (0.75, 0.75, 0.75)\n float inputs:center = 0.5",
+        )
         seen = self.shown(split)[:, :, 1]
         np.testing.assert_allclose([seen[8, 3], seen[8, 12]], [0.25, 0.75], atol=0.01)
 
     def test_noise_and_normal_map(self) -> None:
-        noise = node("n", "ND_fractal3d_float", "float inputs:amplitude = 0.5\n int inputs:octaves = 5\n float inputs:lacunarity = 2.5", "float outputs:out")
+        noise = node(
+            "n", "ND_fractal3d_float", "float inputs:amplitude = 0.5\n int inputs:octaves = 5\n float inputs:lacunarity = 2.5", "float outputs:out"
+        )
         scene = self.convert(mtlx("open_pbr_surface", "float inputs:specular_roughness.connect = </World/M/n.outputs:out>", noise))
         self.has(scene, "noise { scale 1.0 m; octaves 5; lacunarity 2.5")
         self.remark(scene, "another noise")
         self.picture(colour=(128, 128, 255))
         image = node("i", "ND_image_vector3", 'asset inputs:file = @map.png@ (colorSpace = "raw")', "float3 outputs:out")
-        normal = node("n", "ND_normalmap_float", "float3 inputs:in.connect = </World/M/i.outputs:out>\n float inputs:scale = 0.5", "float3 outputs:out")
+        normal = node(
+            "n", "ND_normalmap_float", "float3 inputs:in.connect = </World/M/i.outputs:out>\n float inputs:scale = 0.5", "float3 outputs:out"
+        )
         scene = self.convert(mtlx("open_pbr_surface", "float3 inputs:geometry_normal.connect = </World/M/n.outputs:out>", image + normal))
         self.has(scene, "space=data strength=0.5")
 

@@ -117,9 +117,7 @@ def seamless(surface: Surface, primvar: Primvar) -> bool:
     return bool(same)
 
 
-def _groups(
-    ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], node: Node
-) -> list[tuple[str, Array]]:
+def _groups(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], node: Node) -> list[tuple[str, Array]]:
     """Faces by material, as groups of the file; the materials of all but the first are written."""
     owner = np.full(len(surface.faces), -1, np.int64)
     for i, (_, faces, _) in enumerate(subsets):
@@ -139,9 +137,7 @@ def _groups(
     return groups
 
 
-def _write_file(
-    ctx: Context, surface: Surface, groups: list[tuple[str, Array]], smooth_triangles: bool, stem: str, node: Node
-) -> None:
+def _write_file(ctx: Context, surface: Surface, groups: list[tuple[str, Array]], smooth_triangles: bool, stem: str, node: Node) -> None:
     """The cage as OBJ files, one for each key."""
     uvs = uv_corners = None
     if surface.uvs is not None:
@@ -225,5 +221,3 @@ def _options(ctx: Context, mesh: UsdGeom.Mesh, surface: Surface, scheme: str, no
     texture = _token(ctx, mesh, mesh.GetFaceVaryingLinearInterpolationAttr(), TEXTURE_BOUNDARIES)
     if texture and texture != "corners-plus1":
         node.set("texture-boundary", texture)
-
-

@@ -264,9 +264,7 @@ def _camera(ctx: Context, s: Settings, prim: Usd.Prim, place: Place, aspect: flo
     return node
 
 
-def _lens(
-    ctx: Context, s: Settings, prim: Usd.Prim, node: Node, focal: float, width: float, height: float, offsets: list[float]
-) -> None:
+def _lens(ctx: Context, s: Settings, prim: Usd.Prim, node: Node, focal: float, width: float, height: float, offsets: list[float]) -> None:
     """Perspective, all in metres. Only ratios show unless there is depth of field."""
     lens, t = UsdGeom.Camera(prim), ctx.times.first
     # The language takes lenses of 0.1 mm to 100 m: without depth of field the sensor may have any size.
@@ -287,7 +285,11 @@ def _lens(
         else:
             node.set("f-stop", float(f"{stop:.9g}"))
         if focal / stop > 0.5:
-            ctx.report.approximated(prim, f"a lens {focal / stop:.2g} m across", f"USD counts focal lengths in tenths of a unit, of {ctx.metres:g} m here: is metersPerUnit right?")
+            ctx.report.approximated(
+                prim,
+                f"a lens {focal / stop:.2g} m across",
+                f"USD counts focal lengths in tenths of a unit, of {ctx.metres:g} m here: is metersPerUnit right?",
+            )
     if focus > 0 and s.depth_of_field:
         node.set("focus", float(f"{focus:.9g}"), "m")
 
@@ -347,5 +349,3 @@ def _camera_remarks(ctx: Context, prim: Usd.Prim) -> None:
             ctx.report.approximated(prim, f"{attribute.GetName()} that changes", "it is that of the first frame")
     if lens.GetStereoRoleAttr().Get() not in (None, UsdGeom.Tokens.mono):
         ctx.report.left_out(prim, "stereoRole", "cameras are rendered one by one")
-
-

@@ -60,7 +60,7 @@ def run(arguments: list[str]) -> int:
     try:
         frames = _frames(given.frames) if given.frames else None
         variants = [_variant(v) for v in given.variant]
-        from . import Remark, Report, StageError, load
+        from . import Report, StageError, load
     except ValueError as fault:
         sys.stderr.write(f"abbe-usd: {fault}\n")
         return WRONG_ARGUMENTS
@@ -68,10 +68,7 @@ def run(arguments: list[str]) -> int:
         sys.stderr.write(f"abbe-usd: {fault}\n")
         return NO_FILE
 
-    def show(remark: Remark) -> None:
-        sys.stderr.write(f"{remark}\n")
-
-    report = Report(None if given.json else show)
+    report = Report()
     output = Path(given.output) if given.output else Path(given.stage).with_suffix(".scene")
     purposes = [p.strip() for p in given.purpose.split(",")] if given.purpose else None
     code = 0
@@ -99,6 +96,8 @@ def _finish(as_json: bool, output: str, report: object, code: int) -> None:
         text = {"scene": written, "exit": code, "warnings": report.warning_count, "errors": len(report.errors), **report.as_json()}
         sys.stdout.write(json.dumps(text, indent=2, ensure_ascii=False) + "\n")
         return
+    for remark in report.remarks:
+        sys.stderr.write(f"{remark}\n")
     summary = report.summary()
     if summary:
         sys.stdout.write(summary + "\n")

@@ -204,9 +204,7 @@ def _refined(place: Place, keys: list[float]) -> Iterator[float]:
     """More keys where something turns far between two: maps are interpolated by the shorter way."""
     for a, b in zip(keys, keys[1:], strict=False):
         yield a
-        turn = np.linalg.norm(place.at(a)[:3, :3] - place.at((a + b) / 2)[:3, :3]) / max(
-            1e-30, np.linalg.norm(place.at(a)[:3, :3])
-        )
+        turn = np.linalg.norm(place.at(a)[:3, :3] - place.at((a + b) / 2)[:3, :3]) / max(1e-30, np.linalg.norm(place.at(a)[:3, :3]))
         pieces = min(64, math.ceil(turn / 0.1))  # some 15 degrees each
         for i in range(1, pieces):
             yield a + (b - a) * i / pieces

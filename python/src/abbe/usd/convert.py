@@ -291,7 +291,9 @@ class Converter:
             names = [self._prototype(visit, target) for target in targets]
             keys = instancing.moves(ctx, instancer)
             if len(keys) > 1 and count > instancing.MOST_MOVING:
-                ctx.report.approximated(prim, "instances that move by themselves", f"they stand still: {count} are more than {instancing.MOST_MOVING}")
+                ctx.report.approximated(
+                    prim, "instances that move by themselves", f"they stand still: {count} are more than {instancing.MOST_MOVING}"
+                )
                 keys = keys[:1]
             if len(keys) > 1:
                 nodes = self._moving(visit, instancer, keys, shown, names, protos)
@@ -336,9 +338,7 @@ class Converter:
             ctx.grow(np.array([places[mine].min(axis=0) - reach, places[mine].max(axis=0) + reach]), visit.place)
         return nodes
 
-    def _moving(
-        self, visit: Visit, instancer: UsdGeom.PointInstancer, keys: list[float], shown: Any, names: list[str], protos: Any
-    ) -> list[Node]:
+    def _moving(self, visit: Visit, instancer: UsdGeom.PointInstancer, keys: list[float], shown: Any, names: list[str], protos: Any) -> list[Node]:
         nodes = instancing.moving_instances(self.ctx, instancer, keys, shown, names, protos)
         if not nodes:
             return []

@@ -22,9 +22,7 @@ def smoothstep(low: float, high: float, x: float) -> float:
     return t * t * (3 - 2 * t)
 
 
-def cone_profile(
-    ctx: Context, prim: Usd.Prim, candela: float, angle: float, softness: float, focus: float, flat: bool
-) -> FileRef:
+def cone_profile(ctx: Context, prim: Usd.Prim, candela: float, angle: float, softness: float, focus: float, flat: bool) -> FileRef:
     """Intensity by the angle with the axis: cos^focus within the cone; times the cosine for what is flat."""
     angles = [i * STEP for i in range(int(180 / STEP) + 1)]
     inner = angle * (1 - softness)

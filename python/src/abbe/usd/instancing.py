@@ -149,9 +149,7 @@ def moves(ctx: Context, instancer: UsdGeom.PointInstancer) -> list[float]:
     return keys
 
 
-def moving_instances(
-    ctx: Context, instancer: UsdGeom.PointInstancer, keys: list[float], shown: Array, names: list[str], protos: Array
-) -> list[Node]:
+def moving_instances(ctx: Context, instancer: UsdGeom.PointInstancer, keys: list[float], shown: Array, names: list[str], protos: Array) -> list[Node]:
     """An instance for each, with its own keys. Raises BadInstancer."""
     base = Usd.TimeCode((ctx.times.first + ctx.times.last) / 2)
     at_keys = []

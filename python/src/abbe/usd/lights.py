@@ -154,9 +154,7 @@ def shaping_of(ctx: Context, prim: Usd.Prim) -> Shaping:
 # Lights of no extent, for what has a shaping. Their intensity is that which the area shows from far away.
 
 
-def _shaped(
-    ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission, shaping: Shaping, metres2: float, flat: bool
-) -> list[Node]:
+def _shaped(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission, shaping: Shaping, metres2: float, flat: bool) -> list[Node]:
     """`metres2`: the area that is seen along the axis. `flat` ones are seen by the cosine of the angle with it."""
     candela = e.nits * metres2
     why = "a point: its shadows are sharp, and it is not seen"

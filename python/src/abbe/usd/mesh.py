@@ -40,9 +40,7 @@ def _with_material(node: Node, look: Look) -> Node:
     return node
 
 
-def _polygon_parts(
-    ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], look: Look
-) -> list[tuple[str, Surface, Look]]:
+def _polygon_parts(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], look: Look) -> list[tuple[str, Surface, Look]]:
     """A mesh by materials: the faces of each subset, and those of none."""
     path = str(surface.prim.GetPath())
     if not subsets:
@@ -63,9 +61,7 @@ def _polygon_parts(
     return parts
 
 
-def convert_mesh(
-    ctx: Context, prim: Usd.Prim, place: Place, look: Look, look_of_subset: Callable[[UsdGeom.Subset], Look]
-) -> list[Node]:
+def convert_mesh(ctx: Context, prim: Usd.Prim, place: Place, look: Look, look_of_subset: Callable[[UsdGeom.Subset], Look]) -> list[Node]:
     """The shapes that a mesh becomes; none, with remarks, where it cannot be."""
     mesh = UsdGeom.Mesh(prim)
     scheme = str(mesh.GetSubdivisionSchemeAttr().Get() or "catmullClark")

@@ -145,8 +145,7 @@ def read_primvar(prim: Usd.Prim, name: str, time: float, topology: Topology) -> 
     if primvar.GetTypeName().scalarType == primvar.GetTypeName():
         array = array.reshape(1, -1)
     indices = primvar.GetIndices(time) if primvar.IsIndexed() else None
-    return to_primvar(name, array, None if not indices else np.asarray(indices, np.int32),
-                      str(primvar.GetInterpolation()), topology)
+    return to_primvar(name, array, None if not indices else np.asarray(indices, np.int32), str(primvar.GetInterpolation()), topology)
 
 
 def flipped(topology: Topology) -> Array:
@@ -392,5 +391,3 @@ def _write_inline(surface: Surface, corners: Array, columns: dict[str, ply.Float
             attribute.children = [Node("-").numbers(row) for row in rows]
         else:
             node.child("attribute").text(name).numbers(as_float(x) for x in columns[name])
-
-

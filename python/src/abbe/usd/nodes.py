@@ -90,7 +90,11 @@ def uv_texture(net: Network, shader: UsdShade.Shader, output: str) -> Result:
     part = slice(0, 3) if channel is None else slice(channel, channel + 1)
     value = scaled(image, scale[part], bias[part], channel is not None)
     if value is None:
-        net.ctx.report.approximated(shader.GetPrim(), f"scale {scale[:3]} and bias {bias[:3]} of a picture", "colours beyond 0 and 1 are no textures here: it is as it is stored")
+        net.ctx.report.approximated(
+            shader.GetPrim(),
+            f"scale {scale[:3]} and bias {bias[:3]} of a picture",
+            "colours beyond 0 and 1 are no textures here: it is as it is stored",
+        )
         return image
     return value
 
@@ -229,7 +233,9 @@ def normal_map(net: Network, shader: UsdShade.Shader, name: str) -> NormalMap | 
             return None
         scale, bias = tuple(net.raw(node, "scale", (1.0,) * 4))[:3], tuple(net.raw(node, "bias", (0.0,) * 4))[:3]
         if scale != (2, 2, 2) or bias != (-1, -1, -1):
-            net.ctx.report.approximated(node.GetPrim(), f"a normal map of scale {scale} and bias {bias}", "it is taken as 2 and -1, which fit pictures of 8 bits")
+            net.ctx.report.approximated(
+                node.GetPrim(), f"a normal map of scale {scale} and bias {bias}", "it is taken as 2 and -1, which fit pictures of 8 bits"
+            )
         return NormalMap(image, strength)
     elif kind.startswith(("ND_normal_", "ND_Nworld")):
         return None  # the surface's own

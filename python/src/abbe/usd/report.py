@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-from collections.abc import Callable
 from typing import Any
 
 SHOWN = 5  # remarks of the same words that are kept by themselves; further ones are counted
@@ -56,14 +55,13 @@ def strongest_layer(prim: Any) -> str:
 
 
 class Report:
-    """Collects remarks and counts. `on_remark` is called for each remark that is kept."""
+    """Collects remarks and counts."""
 
-    def __init__(self, on_remark: Callable[[Remark], None] | None = None) -> None:
+    def __init__(self) -> None:
         self.remarks: list[Remark] = []
         self.counts: dict[str, dict[Fate, int]] = {}
         self.repeated: dict[tuple[str, str, str], int] = {}
         self._fates: dict[str, tuple[str, Fate]] = {}
-        self._on_remark = on_remark
 
     def error(self, code: str, prim: Any, what: str, why: str) -> None:
         self._add(code, prim, what, why)
@@ -88,8 +86,6 @@ class Report:
         self.repeated[key] = self.repeated.get(key, 0) + 1
         if self.repeated[key] <= SHOWN:
             self.remarks.append(remark)
-            if self._on_remark:
-                self._on_remark(remark)
         return f"{code}: {what}: {why}"
 
     def count(self, prim: Any, fate: Fate) -> None:
@@ -126,11 +122,7 @@ class Report:
         return {
             "counts": {kind: {f.value: n for f, n in of.items() if n > 0} for kind, of in sorted(self.counts.items())},
             "remarks": [dataclasses.asdict(remark) for remark in self.remarks],
-            "repeated": [
-                {"code": code, "what": what, "why": why, "times": n}
-                for (code, what, why), n in self.repeated.items()
-                if n > SHOWN
-            ],
+            "repeated": [{"code": code, "what": what, "why": why, "times": n} for (code, what, why), n in self.repeated.items() if n > SHOWN],
         }
 
 

@@ -119,7 +119,9 @@ def _capsule(ctx: Context, prim: Usd.Prim, node: Node) -> float | None:
     columns = [(n, v) for n, v in zip(("x", "y", "z", "nx", "ny", "nz"), (*points.T, *normals.T), strict=True)]
     ref = ctx.files.add(str(prim.GetPath()), "ply", ply.mesh(columns, np.full(len(faces), 4, np.int32), corners))
     node.word("mesh").file(ref)
-    node.remark(ctx.report.approximated(prim, "a capsule", f"a smooth mesh of {len(faces)} faces, within {1 - math.cos(math.pi / AROUND):.1%} of its radius"))
+    node.remark(
+        ctx.report.approximated(prim, "a capsule", f"a smooth mesh of {len(faces)} faces, within {1 - math.cos(math.pi / AROUND):.1%} of its radius")
+    )
     return height / 2 + max(top, bottom)
 
 

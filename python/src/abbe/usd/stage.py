@@ -28,7 +28,6 @@ def quiet() -> Iterator[None]:
     except OSError:
         yield
         return
-    stream, sys.stderr = sys.stderr, os.fdopen(os.dup(saved), "w", errors="replace")
     try:
         with open(os.devnull, "wb") as nothing:
             os.dup2(nothing.fileno(), 2)
@@ -36,8 +35,6 @@ def quiet() -> Iterator[None]:
     finally:
         os.dup2(saved, 2)
         os.close(saved)
-        sys.stderr.close()
-        sys.stderr = stream
 
 
 def open_stage(path: str, options: Options, report: Report) -> Usd.Stage:
