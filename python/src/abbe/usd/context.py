@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -163,7 +164,7 @@ class Context:
 
     # Lengths of the stage in metres.
     def length(self, x: float) -> float:
-        return as_float(x) * self.metres
+        return float(as_float(x) * self.metres)
 
 
 def empty_bounds() -> Matrix:
@@ -202,7 +203,7 @@ def _steps(node: Node, m: Matrix) -> None:
 
 def _refined(place: Place, keys: list[float]) -> Iterator[float]:
     """More keys where something turns far between two: maps are interpolated by the shorter way."""
-    for a, b in zip(keys, keys[1:], strict=False):
+    for a, b in itertools.pairwise(keys):
         yield a
         turn = np.linalg.norm(place.at(a)[:3, :3] - place.at((a + b) / 2)[:3, :3]) / max(1e-30, np.linalg.norm(place.at(a)[:3, :3]))
         pieces = min(64, math.ceil(turn / 0.1))  # some 15 degrees each

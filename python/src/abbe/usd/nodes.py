@@ -382,7 +382,12 @@ def _function(net: Network, shader: UsdShade.Shader, kind: str) -> Callable[[flo
     if kind == "contrast":
         amount, pivot = at("amount", 1), at("pivot", 0.5)
         return lambda x: (x - pivot) * amount + pivot
-    return {"absval": abs, "sqrt": lambda x: math.sqrt(max(x, 0)), "sign": lambda x: math.copysign(1, x) if x else 0.0}.get(kind)
+    simple: dict[str, Callable[[float], float]] = {
+        "absval": lambda x: abs(x),
+        "sqrt": lambda x: math.sqrt(max(x, 0.0)),
+        "sign": lambda x: math.copysign(1.0, x) if x else 0.0,
+    }
+    return simple.get(kind)
 
 
 # Channels.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -177,7 +178,7 @@ def _de_boor(rows: Array, weights: Array, knots: Array, order: int) -> Array:
     breaks = np.unique(knots[degree : len(rows) + 1])
     if len(breaks) < 2 or (np.diff(knots) < 0).any():
         raise BadMesh("knots that do not grow")
-    places = np.unique(np.concatenate([np.linspace(a, b, SPAN + 1) for a, b in zip(breaks, breaks[1:], strict=False)]))
+    places = np.unique(np.concatenate([np.linspace(a, b, SPAN + 1) for a, b in itertools.pairwise(breaks)]))
     homogeneous = np.concatenate([rows * weights[:, None], weights[:, None]], axis=1)
     out = []
     for u in places:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from typing import Union
 
 from .context import as_float
 from .scene_text import FileRef, Node
@@ -84,7 +83,7 @@ class Pattern:
     at: Coordinates = Coordinates("")
 
 
-Value = Union[Const, Image, Attribute, Product, Ramp, Pattern]
+Value = Const | Image | Attribute | Product | Ramp | Pattern
 
 
 def clamped(x: float) -> float:

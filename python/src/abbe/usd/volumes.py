@@ -62,7 +62,7 @@ def _medium(ctx: Context, prim: Usd.Prim, material: UsdShade.Material | None, no
         node.set("extinction", 1 / ctx.metres, "per-m").set("albedo", 0.8)
         ctx.report.approximated(prim, "a volume without a volume shader", "extinction 1 per unit of the stage, albedo 0.8")
         return
-    net, shader = Network(ctx, material), source  # type: ignore[arg-type]
+    net, shader = Network(ctx, material), source
     if node_kind(str(source.GetIdAttr().Get() or "")) == "volume":
         found = net.source(source, "vdf")
         if found and found[1]:
