@@ -434,6 +434,9 @@ class BracePlanner {
             if (lastClosing != nullptr) relate(d, lastClosing, "the last open block ends here");
         }
         replace(t, ' ');
+        const char* next = t.at + 1;
+        while (*next == ' ' || *next == '\t') ++next;
+        if (*next == ';') plan_.text[static_cast<std::size_t>(next - text_.begin)] = ' '; // would end nothing
     }
 
     const SourceText& text_;

@@ -28,7 +28,7 @@ void TreeReader::read() {
         if (*at_ == '}')
             closeBlock();
         else if (*at_ == ';')
-            ++at_;
+            readLoneSemicolons();
         else if (at_ < text_.end)
             readNode();
         else
@@ -36,6 +36,14 @@ void TreeReader::read() {
     }
     reportUnclosed();
     closeAtEnd();
+}
+
+// KDL knows no empty nodes: a `;` ends one that stands before it.
+void TreeReader::readLoneSemicolons() {
+    const char* const first = at_;
+    while (*at_ == ';') ++at_;
+    Diagnostic& d = errors_.error("E0128", first, at_, "this `;` ends no node", "remove it");
+    errors_.fix(d, first, at_, "");
 }
 
 // Reserves the arrays by cheap bounds: every node but the last is followed by a line end, a semicolon or a brace. What
@@ -106,6 +114,7 @@ bool TreeReader::readSlashdash() {
     if (at_ < text_.end && *at_ != '}' && *at_ != ';' && !twice) return true;
     errors_.error("E0122", dash, dash + 2, "`/-` has nothing to switch off",
                   twice ? "another `/-` follows" : "no node follows");
+    if (*at_ == ';') ++at_;
     return false;
 }
 
@@ -352,6 +361,8 @@ void TreeReader::reportStray() {
     if (lastClosing_ != nullptr)
         d.related.push_back({text_.span(lastClosing_, lastClosing_ + 1), "the last open block ends here"});
     ++at_;
+    skipSpace();
+    if (*at_ == ';') ++at_; // its end, as it would be that of a block
     lastClosing_ = nullptr;
 }
 

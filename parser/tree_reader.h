@@ -66,6 +66,7 @@ class TreeReader {
     void reserve();
 
     void readNode();
+    void readLoneSemicolons();
     bool readSlashdash();
     bool readName(Record&);
     bool readOddName(Record&);

@@ -259,13 +259,18 @@ const char* ValueScanner::scanParentheses(const char* p) {
 const char* ValueScanner::scanOther(const char* p) {
     const std::uint32_t length = std::max(decodeUtf8(p, errors_.text().end).length, 1u);
     const std::string_view character = between(p, p + length);
+    lost_ = true;
+    if (character == ",") { // where no node of values is: see TreeReader::reportCommas()
+        Diagnostic& comma = errors_.error("E0112", p, p + 1, "nothing is separated by commas", "remove the comma");
+        errors_.fix(comma, p, p + 1, "");
+        return p + 1;
+    }
     Diagnostic& d = errors_.error("E0101", p, p + length, fmt::format("`{}` has no meaning here", character),
                                   "unexpected character");
     if (character == "[" || character == "]") d.help = "lists are plain values: `from 0 1 4`";
     if (character == "/")
         d.help = "a name that contains `/` needs quotes; a comment begins with `//`; "
                  "there are no expressions";
-    lost_ = true;
     return p + length;
 }
 

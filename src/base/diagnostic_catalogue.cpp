@@ -36,6 +36,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0125", "unknown keyword", "The words that begin with `#` are `#true`, `#false`, `#null`, `#inf`, `#-inf` and `#nan`. Colours as hexadecimal digits are texts: `\"#d87040\"`."},
     {"E0126", "a block in parentheses or brackets", "Blocks stand in braces: `camera { from 0 1 3 }`. Parentheses and brackets have no meaning in scenes."},
     {"E0127", "a block has no `{`", "The lines below are indented like a block, or a `}` follows, but nothing opens the block. The `{` stands at the end of the line that it belongs to."},
+    {"E0128", "a `;` that ends no node", "A `;` ends the node before it on its line, as in `from 0 1 4; fov 40 deg`. Alone it means nothing: KDL has no empty nodes."},
     {"E0199", "too many syntax errors", "After a thousand syntax errors no more are listed. Probably this is not a scene file."},
     {"W0101", "a key is given twice", "The last of several equal keys on a node counts; the others have no effect."},
     {"W0199", "more faults than are listed", "Of one kind of fault a thousand are listed and the others only counted. Fix one of them and check again: a program that writes the file probably makes the same mistake everywhere."},

@@ -12,7 +12,7 @@ TEST_CASE("nodes, values, keys and blocks") {
     CHECK(printedText("a 1 \"b\" c k=2 d { e; f { g } }\nh") ==
           "a 1 \"b\" c d k=2 {\n    e\n    f {\n        g\n    }\n}\nh\n");
     CHECK(printedText("").empty());
-    CHECK(printedText("\n;;\n // nothing\n").empty());
+    CHECK(printedText("\n\n // nothing\n").empty());
     CHECK(printedText("a{}") == "a {\n}\n");
     CHECK(printedText("a {}") == "a {\n}\n");
     CHECK(printedText("a {b}") == "a {\n    b\n}\n");
