@@ -1,5 +1,5 @@
-// The scene language: text in, tree of nodes out. Syntax is KDL 2.0.0 (docs/language/syntax.md); the meaning of the
-// nodes is the schema's business.
+// The scene language: text in, tree of nodes out, and the layout of the text. Syntax is KDL 2.0.0
+// (docs/language/syntax.md); the meaning of the nodes is the schema's business.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -37,6 +37,14 @@ struct ParseOptions {
 // `$name` stood. Never null: what could be understood is in the tree, and nodes that lost something say so (damaged()).
 // The SourceMap must outlive the document, whose texts point into it.
 std::shared_ptr<schema::Document> parse(const SourceMap&, FileId, const ParseOptions&, Diagnostics&);
+
+// The text in the layout of docs/language/syntax.md, "Layout": comments, texts and the spelling of numbers stay as they
+// are, and so do spaces inside of lines. What is laid out so stays so. Requires: parse() found no errors in the text.
+std::string layOut(std::string_view text);
+// The text with `scene 1` behind the comments that it begins with. Requires the same, and that it has no edition.
+std::string withEdition(std::string_view text);
+// Whether two texts without errors are the same tree: names, values, keys and blocks, wherever they stand.
+bool sameMeaning(const schema::Document&, const schema::Document&);
 
 // Adds the file at `path` to the map. Nothing after a diagnostic: missing, unreadable, larger than 4 GiB, not UTF-8.
 std::optional<FileId> readSceneFile(SourceMap&, const std::filesystem::path& path, Diagnostics&);

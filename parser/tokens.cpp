@@ -377,4 +377,50 @@ TextLiteral scanText(const char* p, SyntaxErrors& errors, schema::Document& docu
     return {after, document.intern(decodeEscapes(text)), false};
 }
 
+namespace {
+
+TokenKind markKind(char c) {
+    switch (c) {
+    case '{':
+        return TokenKind::open;
+    case '}':
+        return TokenKind::close;
+    case ';':
+        return TokenKind::semicolon;
+    case '=':
+        return TokenKind::equals;
+    case '(':
+        return TokenKind::openType;
+    case ')':
+        return TokenKind::closeType;
+    case '\\':
+        return TokenKind::continuation;
+    default:
+        return TokenKind::other;
+    }
+}
+
+} // namespace
+
+Token nextToken(const char* p, SyntaxErrors& errors, schema::Document& document) {
+    const char* const end = errors.text().end;
+    if (p == end) return {TokenKind::end, p, p};
+    if (const char* const word = wordEnd(p, end); word > p) return {TokenKind::word, p, word};
+    if (const std::uint32_t newline = newlineLength(p, end)) return {TokenKind::lineEnd, p, p + newline};
+    if (blankLength(p, end) > 0) {
+        const char* q = p;
+        while (const std::uint32_t blank = blankLength(q, end)) q += blank;
+        return {TokenKind::blank, p, q};
+    }
+    if (*p == '/') {
+        if (p[1] == '/') return {TokenKind::lineComment, p, findLineEnd(p, end)};
+        if (p[1] == '*') return {TokenKind::blockComment, p, skipComment(p, errors)};
+        if (p[1] == '-') return {TokenKind::slashdash, p, p + 2};
+    }
+    if (startsText(p)) return {TokenKind::text, p, scanText(p, errors, document).end};
+    if (*p == '#') return {TokenKind::word, p, wordEnd(p + 1, end)};
+    const std::uint32_t length = std::max(decodeUtf8(p, end).length, 1u);
+    return {markKind(*p), p, p + length};
+}
+
 } // namespace abbe::parser

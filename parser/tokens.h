@@ -1,4 +1,4 @@
-// What stands between the nodes and values of a KDL text, and its quoted texts.
+// What stands between the nodes and values of a KDL text, its quoted texts, and all of it token by token.
 #pragma once
 
 #include "parser/characters.h"
@@ -44,5 +44,37 @@ bool startsText(const char* p);
 // Scans the text at `p` (Requires: startsText(p)). Reports what is wrong and goes on behind it; decoded texts are kept
 // in the document.
 TextLiteral scanText(const char* p, SyntaxErrors&, schema::Document&);
+
+// Tokens: the text without a gap, for what has to write it again. The tree is read without them, by the same functions.
+
+enum class TokenKind : std::uint8_t {
+    end,          // of the text; empty
+    blank,        // white space up to the next token
+    lineEnd,      // one
+    lineComment,  // from `//`, without the line end
+    blockComment, // with all that are inside it
+    continuation, // a `\` alone; what follows up to the line end is tokens of its own
+    slashdash,
+    open,  // {
+    close, // }
+    semicolon,
+    equals,
+    openType,  // (
+    closeType, // )
+    text,      // a quoted text, with its quotes
+    word,      // a bare word, a number or a keyword with its `#`
+    other      // one character that has no meaning there
+};
+
+struct Token {
+    TokenKind kind = TokenKind::end;
+    const char* begin = nullptr;
+    const char* end = nullptr;
+
+    std::string_view text() const { return between(begin, end); }
+};
+
+// The token that begins at `p`. Reports what is wrong inside of it alone; decoded texts are kept in the document.
+Token nextToken(const char* p, SyntaxErrors&, schema::Document&);
 
 } // namespace abbe::parser
