@@ -40,12 +40,17 @@ install_packages() {
     fi
 }
 
-# Other renderers that tests compare with, from PyPI, in build/peers. Without them those tests are skipped.
+# Other renderers and readers of KDL that tests compare with, from PyPI and npm, in build/peers. Without them those tests
+# are skipped. Debian's nodejs comes without npm.
 install_peers() {
     local place=$root/build/peers list=$root/tests/exchange/requirements.txt log=$root/build/install.log
     mkdir -p "$root/build"
     if { [[ -x $place/bin/python ]] || /usr/bin/python3 -m venv "$place"; } >"$log" 2>&1 </dev/null &&
         "$place/bin/python" -m pip install --disable-pip-version-check -q -r "$list" >>"$log" 2>&1 </dev/null; then
+        if command -v npm >/dev/null; then
+            npm install --prefix "$place" --silent --no-audit --no-fund @bgotink/kdl@0.4.0 >>"$log" 2>&1 </dev/null ||
+                say "@bgotink/kdl could not be installed; scenes are compared with one reader of KDL less"
+        fi
         return 0
     fi
     tail -n 3 "$log" >&2
