@@ -1,5 +1,5 @@
-// Speed of the scene parser in MB per second of processor time, single thread, on generated texts. Run by hand:
-// parse_bench [repetitions].
+// Speed of the scene parser and of the layout in MB per second of processor time, single thread, on generated texts.
+// Run by hand: parse_bench [repetitions].
 #include "base/source.h"
 #include "parser/parse.h"
 
@@ -49,21 +49,32 @@ std::string fullPrecision(std::mt19937& random) {
     return text + "\n";
 }
 
+// The shortest of several runs, in seconds of processor time.
+template <typename Work> double secondsOf(int repetitions, Work work) {
+    double best = 1e9;
+    for (int i = 0; i < repetitions; ++i) {
+        const std::clock_t start = std::clock();
+        work();
+        best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    }
+    return best;
+}
+
 void measure(const char* name, std::string text, int repetitions) {
     abbe::SourceMap sources;
     const double megabytes = static_cast<double>(text.size()) / 1e6;
     const abbe::FileId file = sources.add(name, std::move(text));
-    double best = 1e9;
     std::size_t nodes = 0;
-    for (int i = 0; i < repetitions; ++i) {
+    const double parsing = secondsOf(repetitions, [&] {
         abbe::Diagnostics diagnostics;
-        const std::clock_t start = std::clock();
-        const auto document = abbe::parse(sources, file, {}, diagnostics);
-        best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-        nodes = document->nodes.size();
+        nodes = abbe::parse(sources, file, {}, diagnostics)->nodes.size();
         if (diagnostics.hasErrors()) std::exit(1);
-    }
-    std::printf("%-28s %8.1f MB %9zu nodes %8.0f MB/s\n", name, megabytes, nodes, megabytes / best);
+    });
+    const double layout = secondsOf(repetitions, [&] {
+        if (abbe::layOut(sources.text(file)).empty()) std::exit(1);
+    });
+    std::printf("%-28s %8.1f MB %9zu nodes %8.0f MB/s, layout %6.0f MB/s\n", name, megabytes, nodes,
+                megabytes / parsing, megabytes / layout);
 }
 
 } // namespace

@@ -44,6 +44,7 @@ const CommandTable& commandTable() {
         {"convert", kPictures, kConvertHelp, makeCommand<ConvertOptions>},
         {"denoise", kPictures, kDenoiseHelp, makeCommand<DenoiseOptions>},
         {"check", kScenes, kCheckHelp, makeCommand<CheckOptions>},
+        {"fmt", kScenes, kFmtHelp, makeCommand<FmtOptions>},
         {"import", kScenes, kImportHelp, makeCommand<ImportOptions>},
         {"export", kScenes, kExportHelp, makeCommand<ExportOptions>},
         {"pack", kScenes, kPackHelp, makeCommand<PackOptions>},

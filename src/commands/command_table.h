@@ -88,6 +88,21 @@ extern const char* const kCheckHelp;
 void addArguments(Arguments&, CheckOptions&);
 ExitCode run(const CheckOptions&, const CommonOptions&);
 
+// `abbe fmt`: scene files in one layout.
+struct FmtOptions {
+    std::vector<std::string> paths; // "-": standard input
+    std::string standsFor;          // what standard input is called
+    bool standardInput = false;
+    bool check = false; // these two write nothing
+    bool diff = false;
+    bool upgrade = false; // state the edition
+    bool quiet = false;
+};
+
+extern const char* const kFmtHelp;
+void addArguments(Arguments&, FmtOptions&);
+ExitCode run(const FmtOptions&, const CommonOptions&);
+
 // `abbe import`: a scene file of a scene of another program.
 struct ImportOptions {
     std::string path;

@@ -2,6 +2,9 @@
 #include "parse_text.h"
 
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -171,6 +174,55 @@ TEST_CASE("layout: the edition") {
                           "\xef\xbb\xbfscene 1\n\na"},
                          {"/* c\nd */\na", "/* c\nd */\nscene 1\n\na"}};
     for (const auto& [text, expected] : cases) CHECK(withEdition(text) == expected);
+}
+
+namespace {
+
+std::string fileText(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// What stands between ```kdl and ``` in a page.
+std::vector<std::string> fences(const std::string& page) {
+    std::vector<std::string> found;
+    for (std::size_t at = page.find("\n```kdl"); at != std::string::npos; at = page.find("\n```kdl", at)) {
+        const std::size_t begin = page.find('\n', at + 1);
+        const std::size_t end = page.find("\n```", begin);
+        if (end == std::string::npos) break;
+        found.push_back(page.substr(begin + 1, end - begin));
+        at = end + 4;
+    }
+    return found;
+}
+
+} // namespace
+
+TEST_CASE("layout: every scene and snippet of the repository keeps its meaning") {
+    std::vector<std::string> texts;
+    for (const char* folder : {"scenes", "materials", "docs", "tests", "bench"})
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(std::filesystem::path(ABBE_SOURCE_DIR) / folder)) {
+            if (entry.path().extension() == ".scene") texts.push_back(fileText(entry.path()));
+            if (entry.path().extension() == ".md")
+                for (std::string& text : fences(fileText(entry.path()))) texts.push_back(std::move(text));
+        }
+    std::size_t sound = 0;
+    for (const std::string& text : texts) {
+        const auto syntax = [](const auto& parsed) {
+            return std::ranges::any_of(parsed.diagnostics.all(),
+                                       [](const auto& d) { return d.code.starts_with("E01"); });
+        };
+        const auto before = parseText(text);
+        if (syntax(before)) continue; // those that show mistakes
+        ++sound;
+        const std::string once = layOut(text);
+        const auto after = parseText(once);
+        CHECK_MESSAGE(!syntax(after), text);
+        CHECK_MESSAGE(sameMeaning(*before.document, *after.document), text);
+        CHECK_MESSAGE(layOut(once) == once, text);
+    }
+    CHECK(sound > 350);
 }
 
 TEST_CASE("layout: time grows with the text, however it nests") {
