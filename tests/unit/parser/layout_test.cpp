@@ -222,7 +222,7 @@ TEST_CASE("layout: every scene and snippet of the repository keeps its meaning")
         CHECK_MESSAGE(sameMeaning(*before.document, *after.document), text);
         CHECK_MESSAGE(layOut(once) == once, text);
     }
-    CHECK(sound > 350);
+    CHECK(sound > 250);
 }
 
 TEST_CASE("layout: time grows with the text, however it nests") {
