@@ -64,6 +64,10 @@ std::optional<FileId> readForeignScene(LoadedScene& loaded, const std::string& p
 }
 
 std::optional<FileId> readText(LoadedScene& loaded, const SceneInput& input) {
+    if (input.text) {
+        std::istringstream stream(*input.text);
+        return readSceneText(loaded.sources, input.path, stream, loaded.diagnostics);
+    }
     if (input.fromStandardInput) return readSceneText(loaded.sources, input.path, std::cin, loaded.diagnostics);
     if (isPack(input.path)) return readPackedScene(loaded, input.path);
     if (const auto* format = exchange::importFormat(input.path)) return readForeignScene(loaded, input.path, *format);
