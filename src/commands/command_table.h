@@ -287,7 +287,7 @@ ExitCode run(const VolumeConvertOptions&, const CommonOptions&);
 
 // `abbe reference`: what the program makes of its own tables.
 struct ReferenceOptions {
-    enum class What : std::uint8_t { pages, json, man, bash, zsh, fish, share };
+    enum class What : std::uint8_t { pages, json, textmate, man, bash, zsh, fish, share };
     What what = What::pages;
     std::string folder; // of pages and share
 };

@@ -17,7 +17,8 @@ namespace abbe {
 const char* const kReferenceHelp = R"(Writes what the program makes of its own tables: pages, man page, completions.
 
   pages FOLDER      the reference of the scene language, a page of Markdown for each kind
-  json              kinds, types, properties and units for editors and exporters
+  json              kinds, types, properties, units and data for editors and exporters
+  textmate          the TextMate grammar by which editors colour scene files
   man               the manual page, for `man -l`
   bash, zsh, fish   completion for that shell
   share FOLDER      man page and completions where systems look for them below FOLDER
@@ -32,9 +33,9 @@ namespace {
 
 using What = ReferenceOptions::What;
 
-constexpr Choice<What> kWhats[] = {{"pages", What::pages}, {"json", What::json}, {"man", What::man},
-                                   {"bash", What::bash},   {"zsh", What::zsh},   {"fish", What::fish},
-                                   {"share", What::share}};
+constexpr Choice<What> kWhats[] = {{"pages", What::pages}, {"json", What::json}, {"textmate", What::textmate},
+                                   {"man", What::man},     {"bash", What::bash}, {"zsh", What::zsh},
+                                   {"fish", What::fish},   {"share", What::share}};
 
 } // namespace
 
@@ -69,6 +70,7 @@ struct Language {
 std::string referenceText(What what) {
     const Language language;
     if (what == What::json) return schema::schemaJson(language.types);
+    if (what == What::textmate) return schema::textMateGrammar(language.types);
     const CommandInfo tree = commandTree(commandTable());
     if (what == What::man) return manPage(tree, versionNumber());
     const auto topics = schema::explainableWords(language.types);

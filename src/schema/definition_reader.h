@@ -19,6 +19,8 @@ Header readHeader(const Document&, Diagnostics&);
 
 // The spaces that a message offers: "`lin_rec709_scene`, …".
 std::string rgbSpaceList();
+// Every word that names one, the identifiers first.
+std::vector<std::string_view> rgbSpaceWords();
 
 // Reads the value of a `space=` or `rgb=` key; nothing after a diagnostic.
 std::optional<RgbSpaceName> readRgbSpace(const Value&, Diagnostics&);

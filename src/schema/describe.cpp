@@ -1,9 +1,12 @@
 #include "schema/describe.h"
 
 #include "base/diagnostic.h"
+#include "schema/definition_reader.h"
 #include "schema/measure.h"
+#include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
+#include "spectrum/named_spectra.h"
 
 #include <array>
 #include <cmath>
@@ -194,6 +197,10 @@ std::string jsonField(const FieldInfo& field) {
                                return fmt::format(R"({{"name":{},"doc":{},"choices":{}}})", jsonString(key.name),
                                                   jsonString(key.doc), array(key.choices, jsonView));
                            }));
+    if (!field.note.empty()) out += fmt::format(R"(,"note":{})", jsonString(field.note));
+    if (field.repeats || field.type == FieldType::moments) out += R"(,"repeats":true)";
+    if (field.tiles) out += R"(,"tiles":true)";
+    if (field.canMove) out += R"(,"keyed":true)";
     if (!field.block.empty()) out += fmt::format(R"(,"block":{})", array(field.block, jsonField));
     if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonString(field.group));
     if (field.required) out += R"(,"required":true)";
@@ -215,6 +222,56 @@ std::string jsonUnits() {
             out += fmt::format(R"({}{{"name":{},"dimension":"{}","scale":{}}})", out.size() > 1 ? "," : "",
                                jsonString(name), kDimensionIds[i], findUnit(name)->scale);
     return out + "]";
+}
+
+std::string jsonDimensions() {
+    std::string out = "[";
+    for (std::size_t i = 0; i < kDimensionIds.size(); ++i) {
+        const auto d = static_cast<Dimension>(i);
+        out += fmt::format(R"({}{{"name":"{}","doc":{},"si":{},"without_unit":{}}})", out.size() > 1 ? "," : "",
+                           kDimensionIds[i], jsonString(describe(d)), jsonString(siUnit(d)),
+                           jsonString(meaningWithoutUnit(d)));
+    }
+    return out + "]";
+}
+
+std::string jsonKinds() {
+    std::string out = "[";
+    for (int i = 0; i <= static_cast<int>(Kind::render); ++i) {
+        const KindText& kind = kindText(static_cast<Kind>(i));
+        out += fmt::format(R"({}{{"name":"{}","doc":{},"head":{},"example":{}}})", out.size() > 1 ? "," : "",
+                           keyword(kind.kind), jsonString(kind.doc), jsonString(kind.head), jsonString(kind.example));
+    }
+    return out + "]";
+}
+
+std::string jsonWord(const LanguageWord& word) {
+    const auto part = [](const WordPart& p) {
+        return fmt::format(R"({{"name":{},"doc":{},"takes":{},"default":{},"example":{}}})", jsonString(p.name),
+                           jsonString(p.doc), jsonString(p.takes), jsonString(p.defaultText), jsonString(p.example));
+    };
+    return fmt::format(R"({{"name":{},"doc":{},"example":{},"parts":{}}})", jsonString(word.name), jsonString(word.doc),
+                       jsonString(word.example), array(word.parts, part));
+}
+
+// What has a name because it comes with the program.
+std::string jsonNames() {
+    return fmt::format(R"({{"illuminant":{},"measured":{},"glass":{},"metal":{},"rgb_space":{}}})",
+                       array(illuminantNames(), jsonView), array(measuredNames(), jsonView),
+                       array(glassNames(), jsonView), array(metalNames(), jsonView), array(rgbSpaceWords(), jsonView));
+}
+
+std::string jsonPresets(const TypeTable& table) {
+    const auto preset = [](const Preset& p) {
+        return fmt::format(R"({{"kind":"{}","name":{},"group":{},"doc":{},"source":{}}})", keyword(p.kind),
+                           jsonString(p.name), jsonString(p.group), jsonString(p.doc), jsonString(p.source));
+    };
+    return table.presets() ? array(table.presets()->all(), preset) : "[]";
+}
+
+std::string jsonCode(const CodeInfo& code) {
+    return fmt::format(R"({{"code":{},"title":{},"explanation":{}}})", jsonString(code.code), jsonString(code.title),
+                       jsonString(code.explanation));
 }
 
 } // namespace
@@ -247,8 +304,11 @@ std::string schemaJson(const TypeTable& table) {
         return fmt::format(R"({{"name":{},"example":{},"doc":{}}})", jsonString(f.name), jsonString(f.example),
                            jsonString(f.doc));
     };
-    return fmt::format("{{\"edition\":1,\"types\":{},\"spectra\":{},\"units\":{}}}\n", array(table.all(), jsonType),
-                       array(spectrumForms(), form), jsonUnits());
+    return fmt::format("{{\"edition\":1,\"kinds\":{},\"words\":{},\"types\":{},\"spectra\":{},\"units\":{},"
+                       "\"dimensions\":{},\"names\":{},\"presets\":{},\"codes\":{}}}\n",
+                       jsonKinds(), array(languageWords(), jsonWord), array(table.all(), jsonType),
+                       array(spectrumForms(), form), jsonUnits(), jsonDimensions(), jsonNames(), jsonPresets(table),
+                       array(allCodes(), jsonCode));
 }
 
 std::string schemaListing(const TypeTable& table) {

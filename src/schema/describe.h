@@ -30,8 +30,12 @@ std::vector<std::string> explainableWords(const TypeTable&);
 // Every diagnostic code with its explanation, as Markdown: docs/language/diagnostics.md.
 std::string diagnosticsMarkdown();
 
-// Kinds, types, properties, spectra and units as JSON, for editors and exporters.
+// Everything that a scene can say, as JSON for editors and exporters: kinds, types, properties, words, spectra, units,
+// the names of data and presets, diagnostics (docs/editors.md).
 std::string schemaJson(const TypeTable&);
+
+// A TextMate grammar, by which editors colour scene files.
+std::string textMateGrammar(const TypeTable&);
 
 // One line per field with name, type, units, default and range: compared with a golden file, so that every change of
 // the language is seen.

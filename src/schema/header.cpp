@@ -92,11 +92,13 @@ std::optional<RgbSpaceName> findRgbSpace(std::string_view idOrAlias) {
 std::string_view rgbSpaceId(RgbSpaceName space) { return kSpaces[static_cast<std::size_t>(space)].name; }
 const RgbSpace& rgbSpace(RgbSpaceName space) { return kSpaces[static_cast<std::size_t>(space)].space; }
 
-std::string rgbSpaceList() {
+std::vector<std::string_view> rgbSpaceWords() {
     std::vector<std::string_view> names;
     for (const SpaceName& s : kSpaces) names.push_back(s.name);
-    return quotedList(names);
+    return names;
 }
+
+std::string rgbSpaceList() { return quotedList(rgbSpaceWords()); }
 
 std::optional<RgbSpaceName> readRgbSpace(const Value& value, Diagnostics& diagnostics) {
     if (value.isText())
