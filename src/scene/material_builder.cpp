@@ -23,16 +23,18 @@ std::uint32_t MaterialBuilder::keep(std::unique_ptr<const Material> material, Sp
 // again.
 schema::Reference MaterialBuilder::reference(const Definition& d) {
     const auto bindInto = context_.binder(d, context_.diagnostics);
-    if (!d.type) {
-        bindInto(nullptr);
-        return {};
-    }
     if (std::ranges::find(open_, &d) != open_.end()) {
-        context_.diagnostics.error("E0722", d.nameSpan, fmt::format("material `{}` contains itself", d.name),
-                                   "a part of itself");
+        if (d.type) // else an error has been reported
+            context_.diagnostics.error("E0722", d.nameSpan, fmt::format("material `{}` contains itself", d.name),
+                                       "a part of itself");
         return {};
     }
     open_.push_back(&d);
+    if (!d.type) {
+        bindInto(nullptr);
+        open_.pop_back();
+        return {};
+    }
     textures_.beginMaterial();
     MadeMaterial made = makerOf<MakeMaterial>(*d.type)(bindInto, {context_, d, materials_});
     auto uses = textures_.endMaterial();

@@ -334,16 +334,18 @@ bool check(const PhaseTable& table, Diagnostics& diagnostics) {
 // again.
 schema::Reference PhaseBuilder::reference(const schema::Definition& d) {
     const auto bindInto = context_.binder(d);
-    if (!d.type) {
-        bindInto(nullptr);
-        return {};
-    }
     if (std::ranges::find(open_, &d) != open_.end()) {
-        context_.diagnostics.error("E0649", d.nameSpan, fmt::format("phase `{}` contains itself", d.name),
-                                   "a part of itself");
+        if (d.type) // else an error has been reported
+            context_.diagnostics.error("E0649", d.nameSpan, fmt::format("phase `{}` contains itself", d.name),
+                                       "a part of itself");
         return {};
     }
     open_.push_back(&d);
+    if (!d.type) {
+        bindInto(nullptr);
+        open_.pop_back();
+        return {};
+    }
     auto phase = makerOf<MakePhase>(*d.type)(bindInto, {context_, d, phases_});
     open_.pop_back();
     if (!phase) return {};

@@ -37,13 +37,10 @@ const Texture* TextureBuilder::textureFor(schema::Reference reference, TextureUs
 
 schema::Reference TextureBuilder::reference(const Definition& definition, Diagnostics& diagnostics) {
     const auto bindInto = context_.binder(definition, diagnostics);
-    if (!definition.type) {
-        bindInto(nullptr);
-        return {};
-    }
     if (std::ranges::find(openTextures_, &definition, &OpenTexture::definition) != openTextures_.end()) {
-        diagnostics.error("E0731", definition.span, fmt::format("texture `{}` is made of itself", definition.name),
-                          "directly or through others");
+        if (definition.type) // else an error has been reported
+            diagnostics.error("E0731", definition.span, fmt::format("texture `{}` is made of itself", definition.name),
+                              "directly or through others");
         return {};
     }
     if (openTextures_.size() == kMaxTextureLevels) {
@@ -52,6 +49,11 @@ schema::Reference TextureBuilder::reference(const Definition& definition, Diagno
         return {};
     }
     openTextures_.push_back({&definition, {}});
+    if (!definition.type) {
+        bindInto(nullptr);
+        openTextures_.pop_back();
+        return {};
+    }
     auto made = makerOf<MakeTexture>(*definition.type)(bindInto, store(), diagnostics);
     Parts parts = std::move(openTextures_.back().made);
     openTextures_.pop_back();

@@ -31,6 +31,10 @@ TEST_CASE("a material that contains itself is a located error") {
     CHECK(faults("material m mix { first m; second diffuse }") == "E0722");
     CHECK(faults("material m mix { first a; second diffuse }\nmaterial a two-sided { front diffuse; back b }\n"
                  "material b mix { first diffuse; second m }") == "E0722");
+    // Of an unknown type, which is an error enough.
+    CHECK(faults("material m mxx { first m; second diffuse }") == "E0205");
+    CHECK(faults("texture t mxx { even t }\nmaterial m diffuse { reflectance t }") == "E0205");
+    CHECK(faults("phase p mxx { part p }\nmedium f homogeneous { phase p }\nmaterial m diffuse") == "E0205");
     const std::string text = build("material m mix {\nfirst m\nsecond diffuse }\n" + kUse).report();
     CHECK(text.find("material `m` contains itself") != std::string::npos);
 }
