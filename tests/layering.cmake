@@ -54,6 +54,7 @@ set(writers exchange/stated exchange/mitsuba_export exchange/pbrt_export exchang
 set(allowed_exchange/exporter ${allowed_exchange/shared} exchange/shared ${writers})
 set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/importer ${writers} exchange/exporter)
 set(allowed_app ${allowed_scene} parser scene packs ${exchange})
+set(allowed_language_server ${allowed_app} app)
 set(allowed_pictures ${allowed_app} app)
 set(allowed_pages ${allowed_app} app)
 set(allowed_checkpoints ${allowed_app} app study)
@@ -62,10 +63,10 @@ set(allowed_command_line ${allowed_app} app pictures)
 set(allowed_render_run ${allowed_reports} reports checkpoints tev)
 set(allowed_farm ${allowed_app} app checkpoints study)
 set(allowed_view ${allowed_reports} reports denoise)
-set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor view)
+set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor view language_server)
 set(folders base math spectrum tev denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules guiding transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
-            packs ${exchange} app pictures pages checkpoints reports command_line render_run farm view commands)
+            packs ${exchange} app language_server pictures pages checkpoints reports command_line render_run farm view commands)
 
 # Libraries that only one folder may know, or two.
 set(library_folders

@@ -12,7 +12,7 @@ const target = join(root, "docs/images/folders.svg");
 
 // Colours by the part of the program; a library that no part names is drawn grey.
 const parts = [
-    {title: "commands and reports", fill: "#e3ebf7", line: "#5b7db1", folders: ["commands", "command_line", "render_run", "reports", "checkpoints", "pages", "pictures", "app"]},
+    {title: "commands and reports", fill: "#e3ebf7", line: "#5b7db1", folders: ["commands", "command_line", "render_run", "reports", "checkpoints", "pages", "pictures", "language_server", "app"]},
     {title: "measurements", fill: "#efe6f5", line: "#8a64a8", folders: ["study", "verify", "doctor", "denoise"]},
     {title: "the scene and what it is made of", fill: "#e4f1e4", line: "#5a955a", folders: ["scene", "geometry", "lights", "cameras", "film", "media", "materials", "textures"]},
     {title: "light transport", fill: "#fbe9dc", line: "#c07a3e", folders: ["rendering", "path_tracing", "caustics", "transport", "light_sampling"]},

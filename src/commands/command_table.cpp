@@ -50,6 +50,7 @@ const CommandTable& commandTable() {
         {"pack", kScenes, kPackHelp, makeCommand<PackOptions>},
         {"explain", kScenes, kExplainHelp, makeCommand<ExplainOptions>},
         {"info", kScenes, kInfoHelp, makeCommand<InfoOptions>},
+        {"lsp", kScenes, kLspHelp, makeCommand<LspOptions>},
         {"compare", kTrust, kCompareHelp, makeCommand<CompareOptions>},
         {"certify", kTrust, kCertifyHelp, makeCommand<CertifyOptions>},
         {"verify", kTrust, kVerifyHelp, makeCommand<VerifyOptions>},

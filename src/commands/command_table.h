@@ -285,6 +285,15 @@ ExitCode run(const VolumeInfoOptions&, const CommonOptions&);
 ExitCode run(const VolumeMakeOptions&, const CommonOptions&);
 ExitCode run(const VolumeConvertOptions&, const CommonOptions&);
 
+// `abbe lsp`: what editors start.
+struct LspOptions {
+    bool stdio = false;
+};
+
+extern const char* const kLspHelp;
+void addArguments(Arguments&, LspOptions&);
+ExitCode run(const LspOptions&, const CommonOptions&);
+
 // `abbe reference`: what the program makes of its own tables.
 struct ReferenceOptions {
     enum class What : std::uint8_t { pages, json, textmate, man, bash, zsh, fish, share };

@@ -1,0 +1,25 @@
+#include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
+#include "language_server/server.h"
+
+#include <unistd.h>
+
+namespace abbe {
+
+const char* const kLspHelp = R"(Serves an editor: diagnostics, completion, explanations and renaming as one writes.
+
+The editor starts it and talks to it over standard input and output, by the Language Server Protocol 3.17. How editors
+are told so is in docs/editors.md.
+
+Examples:
+  abbe lsp)";
+
+void addArguments(Arguments& a, LspOptions& o) {
+    a.flag("--stdio", &o.stdio, "What it does anyway; some editors ask for it");
+}
+
+ExitCode run(const LspOptions&, const CommonOptions&) {
+    return lsp::runLanguageServer(STDIN_FILENO, STDOUT_FILENO) == 0 ? ExitCode::done : ExitCode::faulty;
+}
+
+} // namespace abbe

@@ -1,0 +1,210 @@
+#include "language_server/analysis.h"
+
+#include "parser/parse.h"
+#include "parser/presets.h"
+#include "scene/registry.h"
+#include "schema/definition_reader.h"
+#include "schema/preset_library.h"
+#include "spectrum/named_spectra.h"
+
+#include <algorithm>
+
+namespace abbe::lsp {
+
+using schema::FieldInfo;
+using schema::FieldType;
+using schema::Kind;
+using schema::Node;
+using schema::TypeInfo;
+using schema::Value;
+
+Language::Language() : types(makeTypeTable()) {
+    Diagnostics diagnostics; // the library has no faults
+    addPresets(types, sources, diagnostics);
+}
+
+Analysis::Analysis(const Language& language, const std::filesystem::path& path, std::string text)
+    : language_(language), file_(sources_.add(path.string(), std::move(text))) {
+    document_ = parse(sources_, file_, {}, diagnostics_);
+    syntaxErrors_ = diagnostics_.hasErrors();
+    tree_ = schema::resolve(document_, language_.types, path.parent_path(), diagnostics_);
+}
+
+const FieldInfo* Scope::find(std::string_view property) const {
+    const auto found = std::ranges::find(fields, property, &FieldInfo::name);
+    return found == fields.end() ? nullptr : &*found;
+}
+
+bool isContainer(Kind kind) { return kind == Kind::group || kind == Kind::object; }
+
+bool isTyped(Kind kind) {
+    return !isContainer(kind) && kind != Kind::instance && kind != Kind::instances && kind != Kind::atmosphere &&
+           kind != Kind::spectrum;
+}
+
+std::optional<Kind> namedBy(const FieldInfo& field, std::string_view key) {
+    if (key == "camera") return Kind::camera;
+    if (key == "on" && field.type == FieldType::place) return Kind::shape;
+    if (key.empty() && field.name == "over" && field.type == FieldType::text) return Kind::shape;
+    return std::nullopt;
+}
+
+std::vector<std::string_view> dataNames(std::string_view form) {
+    if (form == "illuminant") return illuminantNames();
+    if (form == "measured") return measuredNames();
+    if (form == "glass") return glassNames();
+    return form == "metal" ? metalNames() : std::vector<std::string_view>{};
+}
+
+std::vector<Value> writtenValues(const Node& node) {
+    std::vector<Value> values;
+    const std::size_t count = node.allNumbers() ? 1 : node.valueCount();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Value value = node.value(i);
+        if (value.use.valid() && !values.empty() && values.back().use == value.use) continue;
+        values.push_back(value);
+    }
+    return values;
+}
+
+namespace {
+
+// `transform` and `visible-to`, which groups, objects and instances take as shapes do.
+std::span<const FieldInfo> placementFields(const schema::TypeTable& types) {
+    static const std::vector<FieldInfo> fields = [&] {
+        std::vector<FieldInfo> found;
+        const TypeInfo* const sphere = types.find(Kind::shape, "sphere");
+        for (const std::string_view name : {"transform", "visible-to"})
+            if (const FieldInfo* const field = sphere ? sphere->find(name) : nullptr) found.push_back(*field);
+        return found;
+    }();
+    return fields;
+}
+
+Scope nothingIn(std::string_view title) {
+    Scope scope;
+    scope.place = Scope::Place::nothing;
+    scope.title = title;
+    return scope;
+}
+
+Scope fieldsOf(Kind kind, const TypeInfo* type, std::string_view title) {
+    if (!type) return nothingIn(title);
+    Scope scope;
+    scope.place = Scope::Place::fields;
+    scope.kind = kind;
+    scope.type = type;
+    scope.fields = type->fields;
+    scope.title = title;
+    return scope;
+}
+
+Scope definitionScope(const Node& node, const Language& language) {
+    const auto kind = schema::findKind(node.name());
+    if (!kind || *kind == Kind::atmosphere || *kind == Kind::spectrum) {
+        Scope scope = nothingIn(node.name());
+        if (kind == Kind::spectrum) scope.place = Scope::Place::rows; // of a table
+        return scope;
+    }
+    if (isContainer(*kind) || *kind == Kind::instance) {
+        Scope scope;
+        scope.place = isContainer(*kind) ? Scope::Place::container : Scope::Place::fields;
+        scope.kind = *kind;
+        scope.fields = placementFields(language.types);
+        scope.title = node.name();
+        return scope;
+    }
+    if (*kind == Kind::instances) return fieldsOf(*kind, language.types.defaultOf(*kind), node.name());
+    Diagnostics ignored;
+    std::vector<schema::Definition> read;
+    schema::DefinitionReader(language.types, ignored).read(node, read, schema::Place::top);
+    return fieldsOf(*kind, read.empty() ? nullptr : read[0].type, node.name());
+}
+
+Scope blockOf(const FieldInfo& field, Scope::Place place) {
+    Scope scope;
+    scope.place = place;
+    scope.fields = field.block;
+    scope.owner = &field;
+    scope.title = field.name;
+    return scope;
+}
+
+} // namespace
+
+Scope Analysis::inlineScope(Kind kind, const Node& node, std::size_t word) const {
+    if (node.valueCount() <= word || !node.value(word).isText())
+        return fieldsOf(kind, language_.types.defaultOf(kind), keyword(kind));
+    const TypeInfo* type = language_.types.find(kind, node.value(word).text);
+    if (schema::isPreset(type) && language_.types.presets() && node.valueCount() > word + 1) {
+        schema::Definition definition;
+        definition.kind = kind;
+        definition.type = type;
+        definition.arguments = {node.value(word + 1)};
+        Diagnostics ignored;
+        expandPreset(definition, language_.types, ignored);
+        type = definition.type;
+    }
+    return fieldsOf(kind, type, keyword(kind));
+}
+
+Scope Analysis::scopeOf(const Scope& outer, const Node& node) const {
+    if (node.name().starts_with("x-")) return nothingIn(node.name());
+    switch (outer.place) {
+    case Scope::Place::file:
+        return definitionScope(node, language_);
+    case Scope::Place::container:
+        if (!outer.find(node.name())) return definitionScope(node, language_);
+        break;
+    case Scope::Place::steps: // `at TIME { … }`
+        return node.name() == "at" ? outer : blockOf(*outer.owner, Scope::Place::rows);
+    case Scope::Place::fields:
+        break;
+    default:
+        return nothingIn(node.name());
+    }
+    const FieldInfo* const field = outer.find(node.name());
+    if (!field) return nothingIn(node.name());
+    switch (field->type) {
+    case FieldType::transform:
+        return blockOf(*field, Scope::Place::steps);
+    case FieldType::complexIndex:
+        return blockOf(*field, Scope::Place::spectra);
+    case FieldType::reference:
+    case FieldType::weighted:
+        return inlineScope(field->referenceKind, node, 0);
+    default:
+        break;
+    }
+    const std::size_t word = field->type == FieldType::stop ? 1 : 0;
+    const bool texture = (field->texturable || field->type == FieldType::stop) && node.valueCount() > word &&
+                         !node.allNumbers() && node.value(word).isText() &&
+                         language_.types.find(Kind::texture, node.value(word).text);
+    if (texture) return inlineScope(Kind::texture, node, word);
+    return blockOf(*field, field->block.empty() ? Scope::Place::rows : Scope::Place::fields);
+}
+
+const Meaning* Analysis::meaningAt(std::size_t offset) const {
+    const auto& all = meanings();
+    const auto after = std::ranges::upper_bound(all, offset, {}, [](const Meaning& m) { return m.span.begin; });
+    for (auto m = after; m != all.begin() && after - m < 4;) { // of words that touch, the one that begins here
+        --m;
+        if (m->span.begin <= offset && offset <= m->span.end) return &*m;
+    }
+    return nullptr;
+}
+
+std::vector<Meaning> Analysis::occurrences(const Meaning& of) const {
+    const auto group = [](Sense sense) {
+        const bool parameter = sense == Sense::parameter || sense == Sense::parameterUse;
+        return parameter ? 2 : sense == Sense::name || sense == Sense::reference ? 1 : 0;
+    };
+    std::vector<Meaning> found;
+    if (group(of.sense) == 0) return found;
+    for (const Meaning& m : meanings())
+        if (group(m.sense) == group(of.sense) && m.text == of.text && (group(m.sense) == 2 || m.kind == of.kind))
+            found.push_back(m);
+    return found;
+}
+
+} // namespace abbe::lsp
