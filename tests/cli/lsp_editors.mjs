@@ -1,9 +1,10 @@
 // Whether the files for editors hold together:  nodejs lsp_editors.mjs EDITORS REFERENCE.json
 // The grammar is tried with JavaScript's regular expressions, which differ from those of editors in nothing that it uses.
 import { existsSync, readFileSync } from 'node:fs';
-import { join } from 'node:path';
+import Module, { createRequire } from 'node:module';
+import { join, resolve } from 'node:path';
 
-const [editors, reference] = process.argv.slice(2);
+const [editors, reference] = process.argv.slice(2).map((path) => resolve(path));
 let faults = 0;
 const check = (good, what) => {
     if (good) return;
@@ -86,4 +87,37 @@ for (const type of language.types) {
     for (const field of fields(type.fields))
         check(field.doc && field.dimensions.every((d) => dimensions.has(d)), `${type.kind}.${type.name}.${field.name}`);
 }
+
+// The extension, in an editor that is not there.
+const made = [], commands = {}, said = [];
+let fails = false;
+const stand = {
+    vscode: {
+        workspace: { getConfiguration: () => ({ get: () => '/opt/abbe' }), createFileSystemWatcher: (pattern) => pattern },
+        window: { showErrorMessage: async (text) => { said.push(text); } },
+        commands: { registerCommand: (name, action) => (commands[name] = action) },
+    },
+    'vscode-languageclient/node': {
+        LanguageClient: class {
+            constructor(id, name, server, client) { Object.assign(this, { server, client, runs: 0 }); made.push(this); }
+            async start() { if (fails) throw new Error('no such file'); ++this.runs; }
+            async stop() { --this.runs; }
+            isRunning() { return this.runs > 0; }
+        },
+    },
+};
+const load = Module._load;
+Module._load = (name, ...more) => stand[name] ?? load(name, ...more);
+const { activate, deactivate } = createRequire(import.meta.url)(join(editors, 'vscode', extension.main));
+await activate({ subscriptions: [] });
+check(made[0].server.command === '/opt/abbe' && made[0].server.args.join() === 'lsp', 'what the extension starts');
+check(made[0].client.documentSelector[0].language === languages[0].id && made[0].runs === 1, 'what the server is for');
+for (const { command } of extension.contributes.commands) check(command in commands, `the command ${command}`);
+await commands['abbe.restart']();
+check(made.length === 2 && made[0].runs === 0 && made[1].runs === 1, 'starting again');
+await deactivate();
+check(made[1].runs === 0, 'the end of the extension');
+fails = true;
+await activate({ subscriptions: [] });
+check(said.length === 1 && said[0].includes('/opt/abbe lsp'), 'a program that cannot be started');
 process.exit(faults > 0 ? 1 : 0);
