@@ -1,6 +1,6 @@
 // A headless Chromium, spoken to over a pipe (file descriptors 3 and 4) in its own protocol: no package is needed.
 // Everything that a page may not do is collected in `faults`: errors and warnings of the console, exceptions, requests
-// of anything but the file itself and data that is part of it.
+// of anything but the file itself and data that is part of it, or, for a page of a server, but that server.
 import {spawn} from "node:child_process";
 import {mkdtempSync, rmSync} from "node:fs";
 import {tmpdir} from "node:os";
@@ -53,14 +53,15 @@ export class Browser {
             this.child.stdio[3].write(JSON.stringify({id, method, params, sessionId}) + "\0");
         });
     }
-    // A tab that shows the file. options: width, height, scheme "light" or "dark".
-    async open(path, {width = 1280, height = 900, scheme = "light"} = {}) {
+    // A tab that shows the file, or the page at an http address. options: width, height, scheme "light" or "dark", still:
+    // as for people who ask for less motion.
+    async open(path, {width = 1280, height = 900, scheme = "light", still = false} = {}) {
         const {targetId} = await this.send("Target.createTarget", {url: "about:blank"});
         const {sessionId} = await this.send("Target.attachToTarget", {targetId, flatten: true});
-        const page = new Page(this, sessionId, targetId, pathToFileURL(path).href);
+        const page = new Page(this, sessionId, targetId, /^https?:/.test(path) ? path : pathToFileURL(path).href);
         for (const domain of ["Runtime", "Log", "Network", "Page"]) await page.send(`${domain}.enable`);
         await page.send("Emulation.setDeviceMetricsOverride", {width, height, deviceScaleFactor: 1, mobile: false});
-        await page.send("Emulation.setEmulatedMedia", {features: [{name: "prefers-color-scheme", value: scheme}]});
+        await page.send("Emulation.setEmulatedMedia", {features: [{name: "prefers-color-scheme", value: scheme}, {name: "prefers-reduced-motion", value: still ? "reduce" : ""}]});
         const loaded = new Promise(done => { page.loaded = done; });
         const {errorText} = await page.send("Page.navigate", {url: page.url});
         if (errorText) throw new Error(`${path}: ${errorText}`);
@@ -81,7 +82,7 @@ export class Browser {
 
 class Page {
     constructor(browser, sessionId, targetId, url) {
-        Object.assign(this, {browser, sessionId, targetId, url, faults: []});
+        Object.assign(this, {browser, sessionId, targetId, url, faults: [], home: /^https?:/.test(url) ? `${new URL(url).origin}/` : url});
         browser.listeners.set(sessionId, (method, params) => this.heard(method, params));
     }
     send(method, params) { return this.browser.send(method, params, this.sessionId); }
@@ -92,7 +93,8 @@ class Page {
         else if (method === "Log.entryAdded" && ["error", "warning"].includes(p.entry.level)) this.faults.push(`log: ${p.entry.text}`);
         else if (method === "Network.requestWillBeSent") {
             const {url} = p.request;
-            if (url !== this.url && url.split("#")[0] !== this.url && !/^(data|blob):/.test(url)) this.faults.push(`request: ${url.slice(0, 200)}`);
+            const mine = this.home.endsWith("/") ? url.startsWith(this.home) : url.split("#")[0] === this.url;
+            if (url !== this.url && !mine && !/^(data|blob):/.test(url)) this.faults.push(`request: ${url.slice(0, 200)}`);
         } else if (method === "Network.webSocketCreated") this.faults.push(`request: ${p.url}`);
     }
     // The value of an expression, which may be a promise.

@@ -1,6 +1,6 @@
 // Runs inside a page (as text): what a reader would complain about. Returns a list of complaints.
 export function complaints() {
-    const found = [], say = text => found.push(text), seen = e => e.getClientRects().length > 0 && getComputedStyle(e).visibility !== "hidden";
+    const found = [], say = text => found.push(text), seen = e => e.getClientRects().length > 0 && getComputedStyle(e).visibility !== "hidden" && getComputedStyle(e).clipPath === "none"; // clipped away: for screen readers
     const name = e => `${e.tagName.toLowerCase()}${e.id ? `#${e.id}` : ""}${e.getAttribute("class") ? `.${e.getAttribute("class")}` : ""} “${(e.textContent || "").trim().slice(0, 40)}”`;
     if (document.documentElement.scrollWidth > innerWidth) say(`the page is ${document.documentElement.scrollWidth} wide, the window ${innerWidth}`);
     for (const image of document.images) if (!image.complete || !image.naturalWidth) say(`no picture: ${image.src.slice(0, 60)}`);
