@@ -8,11 +8,8 @@ namespace abbe {
 
 const char* const kLspHelp = R"(Serves an editor: diagnostics, completion, explanations and renaming as one writes.
 
-The editor starts it and talks to it over standard input and output, by the Language Server Protocol 3.17. How editors
-are told so is in docs/editors.md.
-
 Examples:
-  abbe lsp)";
+  abbe lsp   as an editor starts it, which talks to it over standard input and output (docs/editors.md))";
 
 void addArguments(Arguments& a, LspOptions& o) {
     a.flag("--stdio", &o.stdio, "What it does anyway; some editors ask for it");
