@@ -1,6 +1,7 @@
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
 #include "language_server/server.h"
+#include "parser/parse.h"
 
 #include <unistd.h>
 
@@ -16,7 +17,7 @@ void addArguments(Arguments& a, LspOptions& o) {
 }
 
 ExitCode run(const LspOptions&, const CommonOptions&) {
-    return lsp::runLanguageServer(STDIN_FILENO, STDOUT_FILENO) == 0 ? ExitCode::done : ExitCode::faulty;
+    return lsp::runLanguageServer(STDIN_FILENO, STDOUT_FILENO, layOut) == 0 ? ExitCode::done : ExitCode::faulty;
 }
 
 } // namespace abbe

@@ -352,6 +352,15 @@ async function outlines(client) {
     const tokens = (await editor.result('semanticTokens/full')).data;
     check(tokens.length % 5 === 0 && tokens.length > 25, 'semantic tokens', tokens);
 
+    // The layout of `abbe fmt`, and nothing for what has syntax errors.
+    editor.show('scene 1\ncamera {\nfov 40 deg\n}\n\n\n\nlight sky\nshape sphere\n');
+    const laidOut = apply(editor.text, await editor.result('formatting', { options: { tabSize: 4, insertSpaces: true } }));
+    check(laidOut === 'scene 1\ncamera {\n    fov 40 deg\n}\n\nlight sky\nshape sphere\n', 'a text that is laid out', laidOut);
+    editor.show(laidOut);
+    check((await editor.result('formatting', { options: {} })).length === 0, 'what is laid out stays so');
+    editor.show('scene 1\ncamera {\nfov 40deg\n}\n');
+    check((await editor.result('formatting', { options: {} })).length === 0, 'a text with syntax errors stays as it is');
+
     // Whatever is being written, everything answers.
     for (const text of ['', '\n', '{', '}', 'shape', 'shape {', 'shape sphere { material', 'material "', 'a\\', '/*', '#"', '"""\n', '$', 'x=', 'x=$', '/-', '\u0000', '\ufeffscene 1', 'scene 1\r\ncamera {\r\n\r\n']) {
         editor.show(text);
