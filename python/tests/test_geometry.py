@@ -134,6 +134,7 @@ class Meshes(StageTest):
         scene = self.convert(polygons(st.format("(0.6, 0)", "(0.6, 1)")))
         line = next(x for x in scene.scene_text.splitlines() if "uvs" in x)
         self.assertEqual(line.count("-"), 8)
+        self.assertIn("faces { - 0 6 7 3; - 1 4 5 2 }", scene.scene_text)
 
     def test_indexed_primvars(self) -> None:
         st = 'texCoord2f[] primvars:st = [(0.25, 0.75), (0.5, 0.5)] (interpolation = "vertex")\n int[] primvars:st:indices = [0, 1, 0, 1, 0, 1]'

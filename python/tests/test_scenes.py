@@ -18,6 +18,7 @@ from support import HEADER, LOOKING_DOWN, WHITE_FLOOR, StageTest, program
 
 from abbe import usd
 from abbe.usd import command
+from abbe.usd.instancing import decompose
 
 
 def world(body: str) -> str:
@@ -246,6 +247,30 @@ class Instances(StageTest):
         self.assertEqual(self.info()["instances"], 20)
         self.assertEqual([n.endswith(".ply") for n in scene.files], [True])
         self.assertAlmostEqual(self.info()["bounds_m"]["upper"][1], 2, delta=1e-3)
+
+    def test_maps_are_put_together_again(self) -> None:
+        # Scale, then the turn of a quaternion, then the move: for maps that turn by any angle and mirror.
+        random = np.random.default_rng(1)
+        maps = np.tile(np.eye(4), (200, 1, 1))
+        for i in range(200):
+            turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+            maps[i, :3, :3] = np.diag(random.uniform(0.1, 3, 3)) @ (turn * np.sign(np.linalg.det(turn)) * (-1) ** i)
+            maps[i, 3, :3] = random.normal(size=3)
+        parts = decompose(maps)
+        assert parts is not None
+        for m, place, (x, y, z, w), size in zip(maps, *parts, strict=True):
+            turn = np.array(
+                [
+                    [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+                ]
+            )
+            np.testing.assert_allclose((turn @ np.diag(size)).T, m[:3, :3], atol=1e-9)
+            np.testing.assert_array_equal(place, m[3, :3])
+        sheared = np.eye(4)[None].copy()
+        sheared[0, 1, 0] = 0.5
+        self.assertIsNone(decompose(sheared))
 
     def test_point_instancer(self) -> None:
         body = f"""def PointInstancer "i" {{

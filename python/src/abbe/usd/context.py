@@ -162,10 +162,6 @@ class Context:
     def keys(self, place: Place) -> list[float]:
         return self.times.of_samples(place.samples)
 
-    # Lengths of the stage in metres.
-    def length(self, x: float) -> float:
-        return float(as_float(x) * self.metres)
-
 
 def empty_bounds() -> Matrix:
     return np.array([[math.inf] * 3, [-math.inf] * 3])
@@ -180,11 +176,6 @@ def is_similarity(m: Matrix, tolerance: float = 1e-4) -> bool:
     a = m[:3, :3] @ m[:3, :3].T
     size = a.trace() / 3
     return size > 0 and bool((np.abs(a - np.eye(3) * size) <= tolerance * size).all())
-
-
-def size_of(m: Matrix) -> float:
-    """By how much a similarity scales."""
-    return float(abs(np.linalg.det(m[:3, :3]))) ** (1 / 3)
 
 
 def _steps(node: Node, m: Matrix) -> None:
@@ -205,7 +196,8 @@ def _refined(place: Place, keys: list[float]) -> Iterator[float]:
     """More keys where something turns far between two: maps are interpolated by the shorter way."""
     for a, b in itertools.pairwise(keys):
         yield a
-        turn = np.linalg.norm(place.at(a)[:3, :3] - place.at((a + b) / 2)[:3, :3]) / max(1e-30, np.linalg.norm(place.at(a)[:3, :3]))
+        size = max(1e-30, float(np.linalg.norm(place.at(a)[:3, :3])))
+        turn = float(np.linalg.norm(place.at(a)[:3, :3] - place.at((a + b) / 2)[:3, :3])) / size
         pieces = min(64, math.ceil(turn / 0.1))  # some 15 degrees each
         for i in range(1, pieces):
             yield a + (b - a) * i / pieces

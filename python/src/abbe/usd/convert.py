@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -204,7 +205,7 @@ class Converter:
             glow = self._glow(visit)
             look = glow or self.materials.look(prim, material, kind == "Mesh")
             if kind == "Mesh":
-                made = convert_mesh(self.ctx, prim, visit.place, look, lambda s, g=glow: g or self._subset_look(s))
+                made = convert_mesh(self.ctx, prim, visit.place, look, self._subset_look if glow is None else _always(glow))
             elif kind in FORMULAS:
                 made = convert_formula(self.ctx, prim, visit.place, look)
             elif kind in CURVES:
@@ -347,6 +348,10 @@ class Converter:
             return []
         group.children += nodes
         return [group]
+
+
+def _always(look: Look) -> Callable[[UsdGeom.Subset], Look]:
+    return lambda subset: look
 
 
 def children_of(prim: Usd.Prim, loose: bool = False) -> list[Usd.Prim]:

@@ -19,13 +19,18 @@ Buffer = Union[bytes, memoryview, "np.ndarray"]
 _COMPARED = 8 << 20  # bytes; larger files are not compared with those that are there
 
 
+def as_bytes(part: Buffer) -> bytes | memoryview:
+    """What a part holds, without a copy where it lies in order."""
+    return np.ascontiguousarray(part).reshape(-1).view(np.uint8).data if isinstance(part, np.ndarray) else part
+
+
 def write_atomically(path: Path, parts: Iterable[Buffer]) -> None:
     """Writes a file under another name and renames it, so that nobody ever reads half of it. Raises OSError."""
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name[:40]}.", dir=path.parent)
     try:
         with os.fdopen(descriptor, "wb") as stream:
             for part in parts:
-                stream.write(part.data if isinstance(part, np.ndarray) and part.size else part)
+                stream.write(as_bytes(part))
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(name, 0o666 & ~mask)
@@ -52,7 +57,7 @@ class SideFiles:
         if size <= _COMPARED:
             digest = hashlib.blake2b(digest_size=16)
             for part in kept:
-                digest.update(np.ascontiguousarray(part) if isinstance(part, np.ndarray) else part)
+                digest.update(as_bytes(part))
             key = (extension, digest.digest())
             if key in self._by_content:
                 return FileRef(self._by_content[key], own=True)

@@ -152,11 +152,13 @@ def flipped(topology: Topology) -> Array:
     """For each corner, which one is there when all faces are turned around."""
     if len(topology.counts) and (topology.counts == topology.counts[0]).all():
         n = int(topology.counts[0])
-        return np.arange(len(topology.corners)).reshape(-1, n)[:, ::-1].reshape(-1)
+        order: Array = np.arange(len(topology.corners)).reshape(-1, n)[:, ::-1].reshape(-1)
+        return order
     starts = np.repeat(topology.starts, topology.counts)
     lengths = np.repeat(topology.counts, topology.counts)
     at = np.arange(len(topology.corners))
-    return starts + lengths - 1 - (at - starts)
+    turned: Array = starts + lengths - 1 - (at - starts)
+    return turned
 
 
 def without_faces(topology: Topology, gone: Array) -> tuple[Topology, Array]:

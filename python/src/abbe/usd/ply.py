@@ -78,7 +78,7 @@ def mesh(columns: Sequence[tuple[str, Floats]], counts: Ints, corners: Ints) -> 
 
 def _lines(prefix: str, rows: npt.NDArray[np.generic]) -> str:
     line = prefix + " %.9g" * rows.shape[1] + "\n"
-    return (line * len(rows)) % tuple(rows.reshape(-1).tolist())
+    return str((line * len(rows)) % tuple(rows.reshape(-1).tolist()))
 
 
 def cage(

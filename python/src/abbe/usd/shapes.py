@@ -87,12 +87,12 @@ def _plane(ctx: Context, prim: Usd.Prim, node: Node) -> float | None:
         return None
     w, h = width / 2, length / 2
     # Counter-clockwise seen from the end of the axis. The width is along x (z where the axis is X), the length along y (z for Y).
-    corners = {
+    faces: dict[str, list[tuple[float, float, float]]] = {
         "Z": [(-w, -h, 0), (w, -h, 0), (w, h, 0), (-w, h, 0)],
         "Y": [(-w, 0, h), (w, 0, h), (w, 0, -h), (-w, 0, -h)],
         "X": [(0, -h, w), (0, -h, -w), (0, h, -w), (0, h, w)],
-    }[axis]
-    node.word("quad").rows("points", corners)
+    }
+    node.word("quad").rows("points", faces[axis])
     return max(w, h)
 
 
@@ -154,9 +154,9 @@ def convert_formula(ctx: Context, prim: Usd.Prim, place: Place, look: Look) -> l
     extent = FORMULAS[str(prim.GetTypeName())](ctx, prim, node)
     if extent is None:
         return []
-    if any(a.ValueMightBeTimeVarying() for a in prim.GetAuthoredAttributes() if a.GetName() in ("radius", "size", "height", "width", "length")):
-        if ctx.times.last > ctx.times.first:
-            ctx.report.approximated(prim, "a size that changes", "it is that when the shutter opens")
+    sizes = [a for a in prim.GetAuthoredAttributes() if a.GetName() in ("radius", "size", "height", "width", "length")]
+    if ctx.times.last > ctx.times.first and any(a.ValueMightBeTimeVarying() for a in sizes):
+        ctx.report.approximated(prim, "a size that changes", "it is that when the shutter opens")
     if str(UsdGeom.Gprim(prim).GetOrientationAttr().Get() or "") == "leftHanded" and look.emits:
         ctx.report.approximated(prim, "leftHanded orientation", "it emits outwards")
     if look.uv or look.attributes:
