@@ -5,13 +5,13 @@
 
 namespace abbe {
 
-RampTexture::RampTexture(std::vector<schema::SpectrumStop> stops, Over over, const Texture* input)
-    : over_(over), input_(input) {
+RampTexture::RampTexture(std::vector<schema::SpectrumStop> stops, Over over, const schema::TexturedNumber& input)
+    : over_(over), input_(input.texture), number_(static_cast<float>(input.value)) {
     for (const schema::SpectrumStop& s : stops) stops_.push_back({s.position, TexturePart(s.value, 0)});
 }
 
 bool RampTexture::needsUv() const {
-    const bool own = over_ == Over::u || over_ == Over::v || (over_ == Over::input && input_->needsUv());
+    const bool own = over_ == Over::u || over_ == Over::v || (input_ && input_->needsUv());
     return own || std::ranges::any_of(stops_, [](const Stop& s) { return s.part.needsUv(); });
 }
 
@@ -55,7 +55,7 @@ template <typename Add> void RampTexture::mean(const TextureQuery& q, Add add) c
         half = boxHalfWidth(q.du.y, q.dv.y);
         break;
     case Over::input:
-        t = static_cast<double>(input_->number(q));
+        t = static_cast<double>(input_ ? input_->number(q) : number_);
         break;
     case Over::x:
         t = static_cast<double>(q.position.x);
@@ -106,7 +106,10 @@ TextureJet RampTexture::jet(const TexturePoint& point, int channels) const noexc
         t.byUv[1].x = 1;
         break;
     case Over::input:
-        t = input_->jet(point, 1);
+        if (input_)
+            t = input_->jet(point, 1);
+        else
+            t.value.x = number_;
         break;
     default: {
         const auto axis = static_cast<std::size_t>(over_) - static_cast<std::size_t>(Over::x);
@@ -140,13 +143,13 @@ std::unique_ptr<Texture> makeRampTexture(const RampTextureParams& p, Diagnostics
         }
     using Over = RampTexture::Over;
     const std::string_view word = p.over.word;
-    const Over over = p.input.texture ? Over::input
-                      : word == "u"   ? Over::u
-                      : word == "v"   ? Over::v
-                      : word == "x"   ? Over::x
-                      : word == "y"   ? Over::y
-                                      : Over::z;
-    return std::make_unique<RampTexture>(p.stops, over, p.input.texture);
+    const Over over = p.input.texture || p.input.span.valid() ? Over::input
+                      : word == "u"                           ? Over::u
+                      : word == "v"                           ? Over::v
+                      : word == "x"                           ? Over::x
+                      : word == "y"                           ? Over::y
+                                                              : Over::z;
+    return std::make_unique<RampTexture>(p.stops, over, p.input);
 }
 
 schema::TypeInfo rampTextureType() {

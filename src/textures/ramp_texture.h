@@ -15,14 +15,14 @@ struct RampTextureParams {
     schema::TexturedNumber input = {};
 };
 
-// A function of u, v, a coordinate in the shape's own space (m), or the first channel of another texture. Between stops
-// spectra are mixed linearly, wavelength by wavelength; beyond the ends it is constant. The mean over the footprint is
-// exact for a box along the coordinate.
+// A function of u, v, a coordinate in the shape's own space (m), or the first channel of another texture, or a number
+// that is the same everywhere. Between stops spectra are mixed linearly, wavelength by wavelength; beyond the ends it
+// is constant. The mean over the footprint is exact for a box along the coordinate.
 class RampTexture final : public Texture {
   public:
     enum class Over : std::uint8_t { u, v, x, y, z, input };
     // Requires at least one stop, positions finite and in order.
-    RampTexture(std::vector<schema::SpectrumStop>, Over, const Texture* input);
+    RampTexture(std::vector<schema::SpectrumStop>, Over, const schema::TexturedNumber& input = {});
 
     int channels() const override { return 3; }
     bool needsUv() const override;
@@ -44,7 +44,8 @@ class RampTexture final : public Texture {
 
     std::vector<Stop> stops_;
     Over over_;
-    const Texture* input_;
+    const Texture* input_; // of Over::input; null: the number
+    float number_;
 };
 
 schema::TypeInfo rampTextureType();

@@ -118,7 +118,7 @@ TEST_CASE("checker: texture coordinates of a million, and no number at all (case
 TEST_CASE("ramp: linear between its stops, steps, ends, spectra, and the mean over the footprint") {
     const ConstantCurve zero(0), half(0.5), one(1);
     using Over = RampTexture::Over;
-    const RampTexture t({{0, of(zero)}, {0.5, of(one)}, {0.5, of(half)}, {1, of(zero)}}, Over::u, nullptr);
+    const RampTexture t({{0, of(zero)}, {0.5, of(one)}, {0.5, of(half)}, {1, of(zero)}}, Over::u);
     CHECK(t.value(at({0.25f, 9})).x == doctest::Approx(0.5));
     CHECK(t.value(at({0.499f, 9})).x == doctest::Approx(0.998));
     CHECK(t.value(at({0.501f, 9})).x == doctest::Approx(0.499));
@@ -132,7 +132,7 @@ TEST_CASE("ramp: linear between its stops, steps, ends, spectra, and the mean ov
         CHECK(std::abs(static_cast<double>(t.value(q).x) - meanOverBox(t, q, {width, 0}, 20000, random)) < 0.01);
     }
     const SampledCurve red([](double nm) { return nm / 1000; }), blue([](double nm) { return 0.9 - nm / 1000; });
-    const RampTexture colours({{2, of(red)}, {4, of(blue)}}, Over::y, nullptr);
+    const RampTexture colours({{2, of(red)}, {4, of(blue)}}, Over::y);
     const Wavelengths lambda = Wavelengths::sample(0.21f);
     const Spectrum s = colours.spectrum(at({}, {0, 3.5f, 0}), lambda), a = red.at(lambda), b = blue.at(lambda);
     for (int i = 0; i < kLanes; ++i) CHECK(s[i] == doctest::Approx(0.25f * a[i] + 0.75f * b[i]));
@@ -140,15 +140,15 @@ TEST_CASE("ramp: linear between its stops, steps, ends, spectra, and the mean ov
         CHECK(std::isfinite(t.value(at({bad, 0})).x));
         CHECK(std::isfinite(colours.value(at({}, {0, bad, 0})).x));
     }
-    const RampTexture single({{0.3, of(half)}}, Over::v, nullptr);
+    const RampTexture single({{0.3, of(half)}}, Over::v);
     CHECK(single.value(at({5, 5})).x == 0.5f);
 }
 
 TEST_CASE("ramp over another texture, and products: values and slopes") {
     const ConstantCurve low(0.2), high(0.9);
     const NoiseTexture noise({0.5, 3, 2, 0.5, 7});
-    const RampTexture over({{0.3, of(low)}, {0.7, of(high)}}, RampTexture::Over::input, &noise);
-    const RampTexture along({{-1, of(low)}, {1, of(noise)}}, RampTexture::Over::x, nullptr);
+    const RampTexture over({{0.3, of(low)}, {0.7, of(high)}}, RampTexture::Over::input, {0, &noise, {}});
+    const RampTexture along({{-1, of(low)}, {1, of(noise)}}, RampTexture::Over::x);
     ProductTextureParams p;
     p.first = of(over);
     p.second = of(along);
@@ -172,6 +172,21 @@ TEST_CASE("ramp over another texture, and products: values and slopes") {
             CHECK(std::abs(slope - static_cast<double>(j.byPosition[0].x)) < 0.03 + 0.02 * std::abs(slope));
         }
     }
+}
+
+TEST_CASE("ramp: a number as its input is the place that is looked up, everywhere") {
+    const ConstantCurve zero(0), one(1);
+    RampTextureParams p;
+    p.stops = {{0, of(zero)}, {1, of(one)}};
+    p.input = {0.25, nullptr, Span{FileId{0}, 1, 5}};
+    Diagnostics diagnostics;
+    const auto t = makeRampTexture(p, diagnostics);
+    REQUIRE(t);
+    CHECK(!t->needsUv());
+    CHECK(t->value(at({0.75f, 0.5f})).x == doctest::Approx(0.25));
+    CHECK(t->jet({{0.75, 0, 0}, {0.75f, 0.5f}, {}}, 1).value.x == doctest::Approx(0.25));
+    p.input = {};
+    CHECK(makeRampTexture(p, diagnostics)->value(at({0.75f, 0.5f})).x == doctest::Approx(0.75));
 }
 
 TEST_CASE("noise: the mean over the footprint is what averaging gives, and nothing is left far away") {
@@ -213,7 +228,7 @@ TEST_CASE("noise: the mean over the footprint is what averaging gives, and nothi
 
 TEST_CASE("triplanar: each side shows the whole pattern, blends sum to one, scale is in metres") {
     const ConstantCurve zero(0), one(1), half(0.5);
-    const RampTexture u({{0, of(zero)}, {1, of(one)}}, RampTexture::Over::u, nullptr);
+    const RampTexture u({{0, of(zero)}, {1, of(one)}}, RampTexture::Over::u);
     TriplanarTextureParams p;
     p.map = of(u);
     p.scale = 2;
