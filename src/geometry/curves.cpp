@@ -245,6 +245,7 @@ Curves::Curves(CurveData data) : data_(std::move(data)) {
     }
     strandFirst_.push_back(first);
     data_.strandSizes = {}; // strandFirst_ says the same
+    area_ = sumOfAreas();
 }
 
 void Curves::addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t size) {
@@ -401,7 +402,7 @@ Vec3 Curves::carried(const RawHit& raw, const Ray& ray, const SurfaceHit& hit, f
     return Vec3(Vec3d(hit.p) + (axisAt(time) - axisAt(ray.time)));
 }
 
-double Curves::area() const {
+double Curves::sumOfAreas() const {
     // Simpson's rule per quarter of a segment is far closer than anyone needs.
     double sum = 0;
     for (const std::uint32_t first : firstPoints_) {

@@ -85,12 +85,13 @@ class Curves final : public Shape {
     // dp/dv is taken as twice the radius across the curve: exact for ribbons and in the middle of tubes.
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
-    double area() const override; // of tubes without ends; of ribbons seen from the side; at first
+    double area() const override { return area_; } // of tubes without ends; of ribbons seen from the side; at first
 
   private:
     void addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t size);
     void addBounds(const std::vector<SizedPoint>& step, std::uint32_t first);
     bool isVisible(std::uint32_t first) const;
+    double sumOfAreas() const;
     // Points in a row at a time: those kept, or moved ones, made in `room`, which holds four.
     const SizedPoint* pointsAt(std::uint32_t first, std::uint32_t count, float time, SizedPoint* room) const;
 
@@ -101,6 +102,7 @@ class Curves final : public Shape {
     std::vector<std::uint8_t> neighbours_;   // CurveNeighbour, for round linear curves
     std::size_t omitted_ = 0;
     Bounds3 bounds_;
+    double area_ = 0; // asked for several times while a scene is built
 };
 
 } // namespace abbe
