@@ -43,7 +43,7 @@ FlagInfo flagOf(const CLI::Option& option) {
     flag.valueOptional = option.get_name(false, true).find('{') != std::string::npos;
     const bool takesValue = option.get_items_expected_max() > 0;
     if (takesValue) flag.value = option.get_type_name();
-    if (flag.valueOptional) flag.value = "FILE";
+    if (flag.valueOptional) flag.value = option.get_type_name();
     flag.choices = choicesOf(flag.value);
     return flag;
 }
@@ -101,8 +101,14 @@ std::string fullName(const CLI::App& command) {
 std::string helpText(const CLI::App& command) {
     const CLI::App* above = command.get_parent();
     std::string text = above ? command.help(fullName(*above)) : command.help();
-    constexpr std::string_view kInternal = "{.}      ", kShown = "[=FILE]  ";
-    if (const auto at = text.find(kInternal); at != std::string::npos) text.replace(at, kInternal.size(), kShown);
+    for (const CLI::Option* option : command.get_options()) {
+        const auto at =
+            text.find("--" + (option->get_lnames().empty() ? std::string() : option->get_lnames()[0]) + kOptionalValue);
+        if (at == std::string::npos) continue;
+        const auto mark = text.find(kOptionalValue, at); // "{.} FILE"
+        const std::string shown = fmt::format("[={}] ", option->get_type_name());
+        text.replace(mark, shown.size(), shown);
+    }
     return text;
 }
 
@@ -284,6 +290,7 @@ CLI::Option* Parser::addFlag(CLI::App& app, Made& made, const Argument& argument
         return app.add_flag_callback(argument.names, *act, argument.help);
     std::string& text = made.texts.emplace_back();
     CLI::Option* const option = app.add_flag(argument.names + kOptionalValue, text, argument.help);
+    option->type_name(argument.value);
     made.optional.push_back([option, &text, read = std::get<Argument::TextReader>(argument.place)] {
         if (option->count() > 0) refuseFault(option->get_name(), read(text));
     });
