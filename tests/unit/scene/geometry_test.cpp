@@ -9,13 +9,13 @@ namespace abbe::test {
 namespace {
 
 // A file that lives as long as the test.
-class TemporaryFile {
+class MeshFileForTest {
   public:
-    TemporaryFile(const std::string& name, const std::string& text)
+    MeshFileForTest(const std::string& name, const std::string& text)
         : path_(std::filesystem::temp_directory_path() / ("abbe_scene_test_" + name)) {
         std::ofstream(path_) << text;
     }
-    ~TemporaryFile() { std::filesystem::remove(path_); }
+    ~MeshFileForTest() { std::filesystem::remove(path_); }
     std::string path() const { return path_.string(); }
 
   private:
@@ -145,14 +145,14 @@ TEST_CASE("geometry: facts count what is there") {
 }
 
 TEST_CASE("geometry: mesh files") {
-    const TemporaryFile obj("mesh.obj", "v 0 0 0\nv 1000 0 0\nv 1000 1000 0\nv 0 1000 0\nf 1 2 3 4\n");
+    const MeshFileForTest obj("mesh.obj", "v 0 0 0\nv 1000 0 0\nv 1000 1000 0\nv 0 1000 0\nf 1 2 3 4\n");
     const auto scene = TestScene::parse("scene 1 length=mm\ncamera { from 0 0 5 m; look-at 0 0 0 }\n" + kSky +
                                         fmt::format("shape mesh \"{}\" {{ material diffuse }}", obj.path()));
     REQUIRE(scene.report() == "");
     CHECK(near(trace(scene, {0.7, 0.2, 5}, {0, 0, -1}).p, {0.7, 0.2, 0})); // a file's numbers are bare lengths
     CHECK(scene.built().facts.files == std::vector<std::string>{obj.path()});
     CHECK(build("shape mesh \"no/such.obj\"").diagnostics().hasErrors());
-    const TemporaryFile damaged("damaged.obj", "v 0 0 0\nv 1 0\nf 1 2 9\n");
+    const MeshFileForTest damaged("damaged.obj", "v 0 0 0\nv 1 0\nf 1 2 9\n");
     const auto bad = build(fmt::format("shape mesh \"{}\"", damaged.path()));
     CHECK(codes(bad) == "E0402");
     CHECK(bad.diagnostics().all().front().span.valid());

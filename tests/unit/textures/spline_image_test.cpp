@@ -26,13 +26,13 @@ ImagePixels sampled(int width, int height, const std::function<double(double, do
 
 float at(const SplineImage& t, float u, float v) { return t.jet({{}, {u, v}, {u, v}}, 1).value.x; }
 
-struct TemporaryFile {
+struct ImageFileForTest {
     std::filesystem::path path;
-    TemporaryFile(const std::string& name, const std::string& bytes)
+    ImageFileForTest(const std::string& name, const std::string& bytes)
         : path(std::filesystem::temp_directory_path() / ("abbe_" + std::to_string(::getpid()) + name)) {
         std::ofstream(path, std::ios::binary) << bytes;
     }
-    ~TemporaryFile() { std::filesystem::remove(path); }
+    ~ImageFileForTest() { std::filesystem::remove(path); }
 };
 
 } // namespace
@@ -110,14 +110,14 @@ TEST_CASE("spline image: tiles do not bleed, and the face decides on their borde
 }
 
 TEST_CASE("image files are read through the module, and faults say why") {
-    const TemporaryFile good(".pgm", std::string("P5 3 2 255\n") + std::string("\x00\x33\x66\x99\xcc\xff", 6));
+    const ImageFileForTest good(".pgm", std::string("P5 3 2 255\n") + std::string("\x00\x33\x66\x99\xcc\xff", 6));
     const ImagePixels image = readImageFile(good.path.string());
     CHECK(image.width == 3);
     CHECK(image.height == 2);
     REQUIRE(image.values.size() == 6);
     CHECK(image.values[5] == doctest::Approx(1));
     CHECK(image.values[1] == doctest::Approx(0.2).epsilon(0.01));
-    const TemporaryFile noise(".exr", "not an image at all");
+    const ImageFileForTest noise(".exr", "not an image at all");
     CHECK_THROWS_AS(readImageFile(noise.path.string()), ImageFileError);
     CHECK_THROWS_AS(readImageFile("/nowhere/x.exr"), ImageFileError);
 }
