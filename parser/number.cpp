@@ -179,8 +179,8 @@ NumberRepair repairNumber(std::string_view written) {
     } else {
         repair.message = fmt::format("`{}` is not a number", written);
         const bool expression = std::string_view("*+-^").find(rest[0]) != std::string_view::npos;
-        repair.label =
-            expression ? "there are no expressions: write the result" : "a name that begins with a digit needs quotes";
+        repair.label = expression ? "what is to be computed stands in quotes: `\"$r * 2\"`"
+                                  : "a name that begins with a digit needs quotes";
         repair.first.clear();
         repair.lost = true;
     }

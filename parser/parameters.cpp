@@ -1,13 +1,12 @@
 #include "parser/parameters.h"
 
 #include "parser/characters.h"
-#include "parser/number.h"
 #include "parser/tokens.h"
 #include "parser/value_scanner.h"
+#include "schema/expression.h"
 #include "schema/foreign_words.h"
 #include "schema/scene_tree.h"
 
-#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -33,6 +32,12 @@ std::optional<ParameterOverride> readOverride(SourceMap& sources, std::string_vi
 
 namespace abbe::parser {
 
+void reportUnused(const schema::Document::Parameter& p, Diagnostics& diagnostics) {
+    if (p.used || p.values().empty()) return; // without a value: reported
+    diagnostics.warning("W0205", p.nameSpan, fmt::format("parameter `{}` is never used", p.name),
+                        fmt::format("no `${}` in this file", p.name));
+}
+
 using schema::Document;
 using schema::Value;
 using schema::ValueKind;
@@ -47,9 +52,12 @@ constexpr std::size_t kMostValues = 16;
 void checkValues(std::vector<Value>& values, Diagnostics& diagnostics) {
     std::erase_if(values, [&](const Value& v) {
         const bool nested = v.kind == ValueKind::word && v.text.starts_with('$');
-        if (nested)
-            diagnostics.error("E0223", v.span, "the value of a parameter cannot refer to a parameter",
-                              "write the value itself");
+        if (nested) {
+            const std::string text = fmt::format("\"{}\"", v.text);
+            auto& d = diagnostics.error("E0223", v.span, "a parameter that is made of another one stands in quotes",
+                                        fmt::format("write `{}`", text));
+            d.fixes.push_back({v.span, text});
+        }
         return nested;
     });
     if (values.size() <= kMostValues) return;
@@ -141,6 +149,9 @@ std::string ParameterTable::listNames() const {
 }
 
 void ParameterTable::override(const ParseOptions& options, const SourceMap& sources) {
+    if (options.outer)
+        for (Parameter& p : document_.parameters)
+            if (const auto* const values = options.outer(p.name)) p.given = *values;
     for (const ParameterOverride& given : options.overrides) {
         const std::string_view value = sources.text(given.value);
         const SourceText text{given.value, value.data(), value.data() + value.size()};
@@ -151,7 +162,7 @@ void ParameterTable::override(const ParseOptions& options, const SourceMap& sour
             checkValues(parameter->given, diagnostics_);
             continue;
         }
-        if (given.ifThere) continue;
+        if (given.ifThere || options.layered) continue;
         const std::string_view near = nearest(given.name);
         diagnostics_
             .error("E0221", text.span(text.begin, text.end), fmt::format("the scene has no parameter `{}`", given.name),
@@ -182,31 +193,28 @@ std::vector<Value> ParameterTable::readValues(const SourceText& text, const Para
     return values;
 }
 
-// `$r*2`: says that there are no expressions, and what the result is where it is simple. False where it is none.
+// "$r * 2" of `$r*2`, and a minus only where a parameter stands in front of it.
+std::string spaced(std::string_view word, std::size_t minus) {
+    std::string text;
+    for (std::size_t i = 0; i < word.size(); ++i) {
+        const bool sign = std::string_view("*+/").find(word[i]) != std::string_view::npos || i == minus;
+        text += sign ? fmt::format(" {} ", word[i]) : std::string(1, word[i]);
+    }
+    return text;
+}
+
+// `$r*2`: says that what is computed stands in quotes. False where it is none.
 bool ParameterTable::reportExpression(const Value& word, std::string_view text) {
     const std::size_t sign = text.find_first_of("*+^");
     const std::size_t end = sign == std::string_view::npos ? text.rfind('-') : sign;
     Parameter* const parameter = end == std::string_view::npos ? nullptr : find(text.substr(0, end));
     if (parameter == nullptr && sign == std::string_view::npos) return false; // `$two-words`
     if (parameter != nullptr) used_[static_cast<std::size_t>(parameter - document_.parameters.data())] = true;
-    const std::string result = parameter != nullptr ? resultOf(*parameter, text[end], text.substr(end + 1)) : "";
-    diagnostics_
-        .error("E0204", word.span, fmt::format("`{}` is an expression, and scenes have none", word.text),
-               result.empty() ? "is not calculated" : fmt::format("write `{}`", result))
-        .help = "write the result, or give it a name of its own: `param name value`";
+    const std::string quoted = fmt::format("\"{}\"", spaced(word.text, end + 1));
+    Diagnostic& d = diagnostics_.error("E0204", word.span, "what is to be computed stands in quotes",
+                                       fmt::format("write `{}`", quoted));
+    d.fixes.push_back({word.span, quoted});
     return true;
-}
-
-// What a parameter of one number and perhaps a unit comes to; empty where that is not simple.
-std::string ParameterTable::resultOf(const Parameter& parameter, char sign, std::string_view operand) {
-    const auto& values = parameter.values();
-    const NumberResult number = parseNumber(operand);
-    if (values.empty() || values.size() > 2 || values[0].kind != ValueKind::number || operand.empty() ||
-        number.error != NumberError::none)
-        return {};
-    const double a = values[0].number, b = number.value;
-    const double result = sign == '*' ? a * b : sign == '+' ? a + b : sign == '-' ? a - b : std::pow(a, b);
-    return values.size() == 2 ? fmt::format("{:.6g} {}", result, values[1].text) : fmt::format("{:.6g}", result);
 }
 
 // The parameter that `word` names, or null after a diagnostic.
@@ -270,12 +278,39 @@ void ParameterTable::substitute(std::span<const ParameterUse> uses) {
             replaceValues(node);
         }
     }
-    for (std::size_t i = 0; i < used_.size(); ++i) {
-        Parameter& p = document_.parameters[i];
-        p.used = used_[i];
-        if (used_[i] || p.values().empty()) continue; // without a value: reported
-        diagnostics_.warning("W0205", p.nameSpan, fmt::format("parameter `{}` is never used", p.name),
-                             fmt::format("no `${}` in this file", p.name));
+    noteTexts();
+    for (std::size_t i = 0; i < used_.size(); ++i) document_.parameters[i].used = used_[i];
+}
+
+void ParameterTable::warnOfUnused() const {
+    for (const Parameter& p : document_.parameters) reportUnused(p, diagnostics_);
+}
+
+// `$name` in texts that are computed where they stand for numbers.
+void ParameterTable::noteTexts() {
+    if (document_.parameters.empty()) return;
+    for (const Value& value : document_.values) noteText(value);
+    for (const schema::Key& key : document_.keys) noteText(key.value);
+    for (const Parameter& p : document_.parameters)
+        for (const Value& value : p.values()) noteText(value);
+}
+
+void ParameterTable::noteText(const Value& value) {
+    if (!schema::isComputed(value)) return;
+    constexpr std::size_t kLongestName = 200;
+    const std::string_view text = value.text;
+    for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
+        std::size_t end = schema::endOfName(text, at + 1);
+        if (end - at > kLongestName) continue;
+        while (end > at + 1) { // `$a-1` uses `a` unless a parameter is called so
+            if (const auto found = index_.find(text.substr(at + 1, end - at - 1)); found != index_.end()) {
+                used_[found->second] = document_.parameters[found->second].inText = true;
+                break;
+            }
+            const std::size_t minus = text.substr(0, end).rfind('-');
+            if (minus == std::string_view::npos || minus <= at) break;
+            end = minus;
+        }
     }
 }
 

@@ -15,6 +15,9 @@ namespace abbe::parser {
 // Keeps a top-level `param` node as a parameter of the document.
 void defineParameter(schema::Document&, std::uint32_t node, Diagnostics&);
 
+// Warns of a parameter without a use.
+void reportUnused(const schema::Document::Parameter&, Diagnostics&);
+
 // The parameters of a document, once all of it has been read.
 class ParameterTable {
   public:
@@ -23,8 +26,9 @@ class ParameterTable {
     // Sets the values that were given from outside.
     void override(const ParseOptions&, const SourceMap&);
     // Puts the values of parameters where their names are used; each keeps its own span and remembers that of its use.
-    // Warns of parameters without a use.
+    // Notes which are used, there or in texts that are computed.
     void substitute(std::span<const ParameterUse>);
+    void warnOfUnused() const;
 
   private:
     using Parameter = schema::Document::Parameter;
@@ -32,7 +36,8 @@ class ParameterTable {
     Parameter* find(std::string_view name);
     const Parameter* lookUp(const schema::Value& word);
     bool reportExpression(const schema::Value& word, std::string_view text);
-    static std::string resultOf(const Parameter&, char sign, std::string_view operand);
+    void noteTexts();
+    void noteText(const schema::Value&);
     std::string_view nearest(std::string_view name);
     std::string listNames() const;
     std::vector<schema::Value> readValues(const SourceText&, const Parameter&);

@@ -64,9 +64,12 @@ std::shared_ptr<schema::Document> parse(const SourceMap& sources, FileId file, c
                                         Diagnostics& diagnostics) {
     const Reading reading = readAsMeant(file, sources.text(file), options.maxDepth);
     diagnostics.addAll(reading.found);
+    auto& own = reading.document->parameters;
+    own.insert(own.end(), options.inherited.begin(), options.inherited.end());
     parser::ParameterTable parameters(*reading.document, diagnostics);
     parameters.override(options, sources);
     parameters.substitute(reading.uses);
+    if (!options.layered) parameters.warnOfUnused();
     return reading.document;
 }
 

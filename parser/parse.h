@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -31,6 +32,12 @@ std::optional<ParameterOverride> readOverride(SourceMap&, std::string_view nameA
 struct ParseOptions {
     std::vector<ParameterOverride> overrides; // of equal names the last one counts
     std::uint32_t maxDepth = 256;             // blocks inside blocks
+    // The text is one of several of a scene (parser/layer_files.h). Who reads them says which parameters are unknown or
+    // unused; those of an outer file may have the name of one of this file, and then have its values; and those that
+    // are inherited hold as if they stood in the text.
+    bool layered = false;
+    std::function<const std::vector<schema::Value>*(std::string_view name)> outer = {};
+    std::vector<schema::Document::Parameter> inherited = {};
 };
 
 // Reads one file into a tree, reports everything that is wrong with its syntax, and puts the values of parameters where

@@ -270,7 +270,7 @@ const char* ValueScanner::scanOther(const char* p) {
     if (character == "[" || character == "]") d.help = "lists are plain values: `from 0 1 4`";
     if (character == "/")
         d.help = "a name that contains `/` needs quotes; a comment begins with `//`; "
-                 "there are no expressions";
+                 "what is to be computed stands in quotes, `\"$r / 2\"`";
     return p + length;
 }
 

@@ -3,7 +3,7 @@
 #include "base/stopwatch.h"
 #include "base/work.h"
 #include "exchange/importer/importer.h"
-#include "parser/parse.h"
+#include "parser/layer_files.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
 
@@ -19,6 +19,14 @@ namespace {
 
 constexpr std::string_view kFrameParameter = "frame";
 
+// Of the files that people wrote: that of the scene and those that it includes.
+std::vector<const schema::Document*> documentsOf(const schema::SceneTree& tree) {
+    std::vector<const schema::Document*> documents{tree.document.get()};
+    for (const auto& [file, insert] : tree.inserts)
+        if (insert.written) documents.push_back(insert.document.get());
+    return documents;
+}
+
 } // namespace
 
 ExitCode LoadedScene::exitCode() const {
@@ -28,12 +36,17 @@ ExitCode LoadedScene::exitCode() const {
 
 bool LoadedScene::changesWithFrames() const {
     if (!tree.document) return false;
-    return asksForFrame() || std::ranges::any_of(tree.document->nodes, [](const auto& n) { return n.name == "at"; });
+    return asksForFrame() || std::ranges::any_of(documentsOf(tree), [](const schema::Document* document) {
+               return std::ranges::any_of(document->nodes, [](const auto& node) { return node.name == "at"; });
+           });
 }
 
 bool LoadedScene::asksForFrame() const {
-    return tree.document && std::ranges::any_of(tree.document->parameters,
-                                                [](const auto& p) { return p.name == kFrameParameter && p.used; });
+    if (!tree.document) return false;
+    return std::ranges::any_of(documentsOf(tree), [](const schema::Document* document) {
+        return std::ranges::any_of(document->parameters,
+                                   [](const auto& p) { return p.name == kFrameParameter && p.used; });
+    });
 }
 
 namespace {
@@ -85,22 +98,22 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     if (!file) return loaded;
     loaded->readable = true;
     loaded->text = *file;
-    ParseOptions options;
+    LayerOptions options{{}, input.layers.variants, input.layers.sets};
     for (const std::string& define : input.defines)
         if (auto override = readOverride(loaded->sources, define, loaded->diagnostics))
-            options.overrides.push_back(std::move(*override));
+            options.defines.push_back(std::move(*override));
     if (input.frame)
-        options.overrides.push_back(
+        options.defines.push_back(
             {std::string(kFrameParameter), loaded->sources.add("--frames", std::to_string(*input.frame)), true});
-    const auto document = parse(loaded->sources, *file, options, loaded->diagnostics);
-    addPresets(loaded->types, loaded->sources, loaded->diagnostics);
-    loaded->parseSeconds = watch.lap();
-    setWork(Work::checking);
     const auto scenePath = loaded->pack     ? loaded->pack->scenePath()
                            : loaded->import ? loaded->import->scenePath()
                                             : std::filesystem::path(input.path);
+    const auto files = readLayerFiles(loaded->sources, *file, scenePath, options, loaded->diagnostics);
+    addPresets(loaded->types, loaded->sources, loaded->diagnostics);
+    loaded->parseSeconds = watch.lap();
+    setWork(Work::checking);
     loaded->models = std::make_unique<PlacedModels>(loaded->sources, loaded->types, loaded->diagnostics);
-    loaded->tree = schema::resolve(document, loaded->types, scenePath.parent_path(), loaded->diagnostics,
+    loaded->tree = schema::resolve(files, loaded->types, loaded->diagnostics,
                                    [&](schema::SceneTree& tree) { loaded->models->place(tree); });
     loaded->tree.frame = input.frame;
     loaded->resolveSeconds = watch.lap();

@@ -16,6 +16,12 @@
 
 namespace abbe {
 
+// What `--variant` and `--set` change in a scene, in their order.
+struct LayerChoice {
+    std::vector<std::string> variants; // names
+    std::vector<std::string> sets;     // "kind.name.property=value"
+};
+
 // The scene of a command line.
 struct SceneInput {
     std::string path;
@@ -27,6 +33,7 @@ struct SceneInput {
     std::optional<int> frame = {};
     // The text, where an editor holds it; `path` is what it is called then, too.
     std::optional<std::string> text = {};
+    LayerChoice layers = {};
 };
 
 // A scene file that was read and resolved. Not movable: the tree refers to sources and types.

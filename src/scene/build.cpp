@@ -246,15 +246,17 @@ void SceneBuilder::build() {
 BuiltScene buildScene(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,
                       Diagnostics& diagnostics, SceneReuse* reuse) {
     BuiltScene built;
-    if (!reuse) {
-        SceneBuilder(tree, types, options, diagnostics, built, nullptr).build();
-        return built;
-    }
+    Diagnostics found = diagnostics; // what is wrong so far counts
+    const std::size_t known = found.all().size();
     const auto start = std::chrono::steady_clock::now();
-    reuse->begin();
-    SceneBuilder(tree, types, options, diagnostics, built, reuse).build();
-    reuse->end(!diagnostics.hasErrors(),
-               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (reuse) reuse->begin();
+    SceneBuilder(tree, types, options, found, built, reuse).build();
+    if (reuse)
+        reuse->end(!found.hasErrors(), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (tree.includes.empty())
+        diagnostics = std::move(found);
+    else
+        addWithIncluders(tree, found, known, diagnostics);
     return built;
 }
 

@@ -41,6 +41,8 @@ const schema::Definition* BuildContext::only(schema::Kind kind, std::string_view
             Diagnostic& e = diagnostics.error("E0608", d.nameSpan,
                                               fmt::format("a scene has one `{}`", schema::keyword(kind)), "second one");
             e.related.push_back({first->nameSpan, "the first one is here"});
+            e.help =
+                fmt::format("to change the first one in a layer, write `override {} {{ … }}`", schema::keyword(kind));
         }
     }
     return first;

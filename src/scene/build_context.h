@@ -89,7 +89,8 @@ class BuildContext {
         if (tree.made.empty() || !isBelow(path, tree.made)) built.facts.files.push_back(path);
     }
     void noteInserts() {
-        for (const auto& [file, insert] : tree.inserts) built.facts.files.push_back(insert.source);
+        for (const auto& [file, insert] : tree.inserts)
+            if (!insert.source.empty()) built.facts.files.push_back(insert.source);
     }
 
     // What a scene needs simulated, and who asked for it.

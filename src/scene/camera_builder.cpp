@@ -27,7 +27,8 @@ const schema::Definition* CameraBuilder::findShape(const std::vector<Definition>
             Diagnostics again; // what is wrong with the transform is reported when the group is placed
             for (const schema::Node& property : d.properties)
                 if (property.name() == "transform")
-                    place = place.then(schema::bindMotion(property, context_.tree.header, again).at(time));
+                    place = place.then(
+                        schema::bindMotion(property, context_.tree.headerOf(property.headSpan()), again).at(time));
             return found;
         }
     }

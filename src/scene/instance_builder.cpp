@@ -63,10 +63,11 @@ std::size_t saturated(std::size_t a, std::size_t b) {
 bool InstanceBuilder::scatterSurface(const schema::Text& over, const std::vector<Definition>& siblings,
                                      ScatterSurface& surface) {
     std::vector<std::string_view> names;
+    const std::string wanted = context_.tree.fullName(over.span, over.value);
     for (const Definition& d : siblings) {
         if (d.kind != Kind::shape) continue;
         if (!d.name.empty()) names.push_back(d.name);
-        if (d.name != over.value) continue;
+        if (d.name != wanted) continue;
         LoadedShape& loaded = shapes_.loaded(d);
         if (!loaded.sound) return false;
         const auto shape = shapes_.placed(loaded, loaded.common.transform.at(motion_.opening()), true);
@@ -83,7 +84,7 @@ bool InstanceBuilder::scatterSurface(const schema::Text& over, const std::vector
     const auto meant = schema::nearest(over.value, names);
     auto& error = context_.diagnostics.error("E0632", over.span, fmt::format("no shape here is named `{}`", over.value),
                                              meant.empty() ? "unknown name" : schema::didYouMean(meant));
-    if (context_.tree.find(Kind::shape, over.value))
+    if (context_.tree.find(Kind::shape, wanted))
         error.help = "it must stand in the same group or object as the instances, or with them at the top level";
     return false;
 }

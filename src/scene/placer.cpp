@@ -276,7 +276,8 @@ Placing Placer::ownPlacing(const Definition& d) {
     Placing result;
     for (const schema::Node& property : d.properties) {
         if (property.name() == "transform") {
-            result.transform = schema::bindMotion(property, context_.tree.headerOf(d.span), context_.diagnostics);
+            result.transform =
+                schema::bindMotion(property, context_.tree.headerOf(property.headSpan()), context_.diagnostics);
         } else if (property.name() == "visible-to") {
             if (const auto words =
                     schema::bindWords(visibleOfPlacement(), property, context_.tree, context_.diagnostics))

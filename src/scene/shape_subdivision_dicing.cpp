@@ -166,7 +166,7 @@ std::function<double(Vec3)> pixelSizeOf(const Camera& camera, Vec2d filmSize, do
 // The definition of the camera that dicing is measured by: null with an error, or for the render camera.
 bool CameraBuilder::checkDicingCamera(const schema::Quantity& dicing) {
     for (const auto& [key, name] : dicing.keys)
-        if (!context_.tree.find(schema::Kind::camera, name)) {
+        if (!context_.tree.find(schema::Kind::camera, name, dicing.span)) {
             unknownCamera(context_.tree, name, dicing.span, context_.diagnostics);
             return false;
         }
@@ -180,7 +180,7 @@ std::optional<CameraBuilder::DicingCamera> CameraBuilder::dicingCamera(const sch
         return DicingCamera{context_.built.scene.camera.get(), {}};
     };
     if (dicing.keys.empty()) return renderCamera();
-    const Definition* d = context_.tree.find(schema::Kind::camera, dicing.keys[0].second);
+    const Definition* d = context_.tree.find(schema::Kind::camera, dicing.keys[0].second, dicing.span);
     if (!d || d == context_.only(schema::Kind::camera, context_.options.camera)) return renderCamera();
     const auto [found, isNew] = dicingCameras_.try_emplace(d);
     if (isNew && d->type) {

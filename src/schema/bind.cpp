@@ -1,6 +1,7 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
 #include "schema/foreign_words.h"
+#include "schema/layers.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
@@ -189,8 +190,12 @@ class Binding {
 
     void unknown(const Node& node) {
         const std::string_view name = node.name();
-        if (name == "at" || isPlanned(name))
-            return reportPlanned(name == "at" ? "at (deformation)" : name, node.nameSpan(), context_.diagnostics);
+        if (name == "at") return reportPlanned("at (deformation)", node.nameSpan(), context_.diagnostics);
+        if (isLayerWord(name)) {
+            report(context_.diagnostics, node.nameSpan(), "E0232",
+                   fmt::format("`{}` belongs at the top level of a file", name), "not in a definition");
+            return;
+        }
         if (isTransformStep(name) && type_.find("transform")) return looseSteps_.push_back(node);
         auto& d = report(context_.diagnostics, node.nameSpan(), "E0201",
                          fmt::format("{} has no property `{}`", typeTitle(), name), "unknown property");

@@ -1,9 +1,11 @@
 #include "schema/binding.h"
 #include "schema/describe.h"
+#include "schema/expression.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -75,8 +77,9 @@ std::optional<BoundValue> bindInteger(const MeasureReader& reader, const Entry& 
     if (!row) return std::nullopt;
     const double x = row->values[0];
     if (x == std::floor(x) && std::abs(x) <= kExact) return static_cast<std::int64_t>(x);
-    reportAt(context.diagnostics, entry.value(0), "E0305", fmt::format("`{}` must be a whole number", name),
-             fmt::format("is {}", entry.value(0).text));
+    reportAt(
+        context.diagnostics, entry.value(0), "E0305", fmt::format("`{}` must be a whole number", name),
+        fmt::format("is {}", entry.value(0).kind == ValueKind::number ? std::string(entry.value(0).text) : plain(x)));
     return std::nullopt;
 }
 
@@ -256,12 +259,14 @@ class ListBinder {
                        "its key is `sharpness=`");
                 return std::nullopt;
             }
-            if (key.value.kind != ValueKind::number || !(key.value.number >= 0)) {
+            const auto sharpness = plainNumber(key.value);
+            if (!sharpness) return std::nullopt;
+            if (!(*sharpness >= 0)) {
                 reportAt(diagnostics_, key.value, "E0303", "a sharpness is a number from 0 on",
                          "10 is infinitely sharp");
                 return std::nullopt;
             }
-            row.sharpness = key.value.number;
+            row.sharpness = *sharpness;
         }
         return row;
     }
@@ -290,10 +295,13 @@ class ListBinder {
                 const Value value = child.value(i);
                 TableCell& cell = row.cells.emplace_back();
                 cell.span = place(value);
-                if (value.kind == ValueKind::number)
-                    cell.number = value.number;
-                else
+                if (value.kind == ValueKind::number || isComputed(value)) {
+                    const auto number = plainNumber(value);
+                    if (!number) return std::nullopt;
+                    cell.number = *number;
+                } else {
                     cell.text = value.text;
+                }
             }
         }
         if (table.rows.empty()) return empty();
@@ -374,18 +382,28 @@ class ListBinder {
 
     static bool isIndex(double x) { return x >= 0 && x == std::floor(x) && x <= kLargestIndex; }
 
+    // A number as it is written, or what its text comes to; not a number where it is neither. Nothing after a
+    // diagnostic.
+    std::optional<double> plainNumber(const Value& value) {
+        if (!isComputed(value)) return value.kind == ValueKind::number ? value.number : std::nan("");
+        constexpr std::array plain = {Dimension::none};
+        const Measure measure{field_.name, plain, -HUGE_VAL, HUGE_VAL, {}, {}};
+        return MeasureReader(measure, header_, diagnostics_).number(value);
+    }
+
     bool addIndex(const Value& value, std::vector<std::uint32_t>& out) {
-        if (value.kind != ValueKind::number || !isIndex(value.number)) return badIndex(value);
-        out.push_back(static_cast<std::uint32_t>(value.number));
+        const auto number = plainNumber(value);
+        if (!number) return false;
+        if (!isIndex(*number)) return badIndex(value, *number);
+        out.push_back(static_cast<std::uint32_t>(*number));
         return true;
     }
 
-    bool badIndex(const Value& value) {
-        const bool isNumber = value.kind == ValueKind::number;
-        const std::string_view why = !isNumber                      ? "not a number"
-                                     : value.number < 0             ? "is negative"
-                                     : value.number > kLargestIndex ? "is too large"
-                                                                    : "is not a whole number";
+    bool badIndex(const Value& value, double number) {
+        const std::string_view why = std::isnan(number)       ? "not a number"
+                                     : number < 0             ? "is negative"
+                                     : number > kLargestIndex ? "is too large"
+                                                              : "is not a whole number";
         reportAt(diagnostics_, value, "E0309", "a vertex index is a whole number from 0 on", std::string(why));
         return false;
     }

@@ -1,5 +1,6 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
+#include "schema/expression.h"
 #include "schema/measure.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
@@ -93,8 +94,9 @@ class TexturedBinder {
         if (entry_.count() == 0 || !entry_.value(0).isText()) return plain();
         const Value word = entry_.value(0);
         const bool bare = entry_.count() == 1 && !entry_.hasBlock() && entry_.keys().empty();
-        const Definition* const spectrum = spectral_ ? context_.tree.find(Kind::spectrum, word.text) : nullptr;
-        const Definition* const named = context_.tree.find(Kind::texture, word.text);
+        const Definition* const spectrum =
+            spectral_ ? context_.tree.find(Kind::spectrum, word.text, place(word)) : nullptr;
+        const Definition* const named = context_.tree.find(Kind::texture, word.text, place(word));
         if (bare && spectrum && named) return ambiguous(word, *spectrum, *named);
         if (bare && spectrum) return plain();
         if (bare && named) return texture(*named);
@@ -105,8 +107,8 @@ class TexturedBinder {
             return std::nullopt;
         }
         const bool form = spectral_ && (findSpectrumForm(word.text) || !bare);
-        const bool fraction = !spectral_ && word.kind == ValueKind::string; // "1/3"
-        if (form || fraction) return plain();
+        const bool number = isComputed(word) || (!spectral_ && word.kind == ValueKind::string); // "1/3"
+        if (form || number) return plain();
         unknown(word);
         return std::nullopt;
     }
@@ -164,15 +166,16 @@ class TexturedBinder {
         std::vector<std::string_view> words = types;
         if (spectral_)
             for (const SpectrumForm& form : spectrumForms()) words.push_back(form.name);
-        auto meant = context_.tree.nearestName(std::span(kinds).first(spectral_ ? 2 : 1), word.text);
+        auto meant = context_.tree.nearestName(std::span(kinds).first(spectral_ ? 2 : 1), word.text, place(word));
         if (meant.empty()) meant = nearest(word.text, words);
         const std::string_view what = spectral_ ? "spectrum or texture" : "texture";
         auto& d = reportAt(context_.diagnostics, word, "E0202", fmt::format("no {} is named `{}`", what, word.text),
                            meant.empty() ? "unknown name" : didYouMean(meant));
+        for (const Kind kind : kinds) context_.tree.noteRemoved(kind, word.text, place(word), d);
         if (spectral_ && parseHex(word.text)) return suggestHex(word, d);
         if (isPicture(word.text)) return suggestImage(word, d);
         for (const Kind kind : {Kind::spectrum, Kind::texture})
-            if (const Definition* const definition = context_.tree.find(kind, meant))
+            if (const Definition* const definition = context_.tree.find(kind, meant, place(word)))
                 d.related.push_back({definition->nameSpan, "defined here"});
         if (meant.empty())
             d.help = fmt::format("write {}, or one of {}",

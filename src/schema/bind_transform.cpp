@@ -1,5 +1,6 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
+#include "schema/expression.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
 
@@ -75,7 +76,7 @@ class StepReader {
 
     std::optional<TransformStep> rotate() {
         const std::string_view example = "rotate y 45 deg";
-        if (entry_.count() > 0 && entry_.value(0).isText() && !parseFraction(entry_.value(0).text)) {
+        if (entry_.count() > 0 && entry_.value(0).isText() && !isComputed(entry_.value(0))) {
             const Value axis = entry_.value(0);
             if (axis.text != "x" && axis.text != "y" && axis.text != "z") {
                 reportAt(diagnostics_, axis, "E0313", "`rotate` needs an axis", "write `x`, `y`, `z` or three numbers");

@@ -1,12 +1,14 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
 #include "schema/entry.h"
+#include "schema/expression.h"
 #include "schema/files.h"
 #include "schema/foreign_words.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -224,7 +226,7 @@ namespace {
 void unknownName(Kind kind, const Value& word, const BindContext& context) {
     const std::string message = fmt::format("no {} is named `{}`", keyword(kind), word.text);
     for (int i = 0; i <= static_cast<int>(Kind::render); ++i)
-        if (const Definition* other = context.tree.find(static_cast<Kind>(i), word.text)) {
+        if (const Definition* other = context.tree.find(static_cast<Kind>(i), word.text, place(word))) {
             auto& d = reportAt(context.diagnostics, word, "E0202", message,
                                fmt::format("this names {} {}",
                                            other->kind == Kind::object || other->kind == Kind::instance ? "an" : "a",
@@ -232,12 +234,13 @@ void unknownName(Kind kind, const Value& word, const BindContext& context) {
             d.related.push_back({other->nameSpan, "defined here"});
             return;
         }
-    auto meant = context.tree.nearestName({&kind, 1}, word.text);
+    auto meant = context.tree.nearestName({&kind, 1}, word.text, place(word));
     const auto types = typeNames(context.table, kind);
     if (meant.empty()) meant = foreignType(context.table, kind, word.text);
     if (meant.empty()) meant = nearest(word.text, types);
     auto& d = reportAt(context.diagnostics, word, "E0202", message, meant.empty() ? "unknown name" : didYouMean(meant));
-    if (const Definition* definition = context.tree.find(kind, meant))
+    context.tree.noteRemoved(kind, word.text, place(word), d);
+    if (const Definition* definition = context.tree.find(kind, meant, place(word)))
         d.related.push_back({definition->nameSpan, "defined here"});
     else if (meant.empty())
         d.help = fmt::format("the types of `{}` are {}", keyword(kind), quotedList(types));
@@ -258,16 +261,32 @@ std::optional<BoundValue> valid(Reference reference, const Key* group) {
 
 } // namespace
 
+namespace {
+
+std::optional<double> weightOf(const Key& key, const Entry& entry, const BindContext& context) {
+    if (isComputed(key.value)) {
+        constexpr std::array plainNumber = {Dimension::none};
+        const Measure measure{key.name, plainNumber, 0, HUGE_VAL, {}, {}};
+        const MeasureReader reader(measure, context.tree.headerOf(entry.span()), context.diagnostics);
+        const auto weight = reader.number(key.value);
+        return weight && reader.inRange(*weight, {}, key.value) ? weight : std::nullopt;
+    }
+    if (key.value.kind == ValueKind::number && key.value.number >= 0 && std::isfinite(key.value.number))
+        return key.value.number;
+    reportAt(context.diagnostics, key.value, "E0303", fmt::format("`{}=` is a number of at least 0", key.name),
+             "not such a number");
+    return std::nullopt;
+}
+
+} // namespace
+
 std::optional<BoundValue> bindWeighted(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     const Key* const key = groupKey(field, entry);
-    const bool sound =
-        !key || (key->value.kind == ValueKind::number && key->value.number >= 0 && std::isfinite(key->value.number));
-    if (!sound)
-        reportAt(context.diagnostics, key->value, "E0303", fmt::format("`{}=` is a number of at least 0", key->name),
-                 "not such a number");
+    std::optional<double> weight = 1;
+    if (key) weight = weightOf(*key, entry, context);
     const auto bound = bindReference(field, entry, context);
-    if (!bound || !sound) return std::nullopt;
-    WeightedReference result{{}, key ? key->value.number : 1, entry.span()};
+    if (!bound || !weight) return std::nullopt;
+    WeightedReference result{{}, *weight, entry.span()};
     if (const auto* one = std::get_if<GroupReference>(&*bound))
         result.reference = one->reference;
     else
@@ -297,11 +316,11 @@ std::optional<BoundValue> bindPlace(const FieldInfo& field, const Entry& entry, 
         reportAt(context.diagnostics, key.value, "E0314", "`on=` needs the name of a shape", "not a name");
         return std::nullopt;
     }
-    if (!context.tree.find(Kind::shape, key.value.text)) {
+    if (!context.tree.find(Kind::shape, key.value.text, place(key.value))) {
         unknownName(Kind::shape, key.value, context);
         return std::nullopt;
     }
-    return Location{std::nullopt, std::string(key.value.text), place(key.value)};
+    return Location{std::nullopt, context.tree.fullName(place(key.value), key.value.text), place(key.value)};
 }
 
 // A bare word is first a defined name, then a type; with arguments or a block it is always a type.
@@ -321,7 +340,7 @@ std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& ent
         return std::nullopt;
     }
     if (bare) {
-        if (const Definition* named = context.tree.find(kind, first.text))
+        if (const Definition* named = context.tree.find(kind, first.text, place(first)))
             return valid(context.resolver.reference(*named, context.diagnostics), group);
         if (!context.table.find(kind, first.text)) {
             unknownName(kind, first, context);
@@ -335,7 +354,7 @@ std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& ent
                fmt::format("`{}` has no key `{}` here", field.name, key.name), "unknown key");
         return std::nullopt;
     }
-    if (isName && !bare && context.tree.find(kind, first.text)) {
+    if (isName && !bare && context.tree.find(kind, first.text, place(first))) {
         reportAt(context.diagnostics, first, "E0214",
                  fmt::format("`{}` is a name: it takes no arguments and no block", first.text),
                  fmt::format("write `{} {}` alone", field.name, first.text));

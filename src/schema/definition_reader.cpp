@@ -2,6 +2,7 @@
 
 #include "schema/entry.h"
 #include "schema/foreign_words.h"
+#include "schema/layers.h"
 #include "schema/preset_library.h"
 #include "schema/suggest.h"
 
@@ -13,7 +14,9 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr auto kPlanned = std::to_array<std::string_view>({"include", "override", "remove", "variant"});
+// Words of programs: a scene has none.
+constexpr auto kControlWords =
+    std::to_array<std::string_view>({"for", "foreach", "repeat", "loop", "while", "if", "else", "function", "def"});
 
 bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances || kind == Kind::atmosphere; }
 
@@ -46,8 +49,6 @@ std::vector<Node> childrenOf(const Node& node) {
 
 } // namespace
 
-bool isPlanned(std::string_view word) { return std::ranges::find(kPlanned, word) != kPlanned.end(); }
-
 void reportPlanned(std::string_view word, Span span, Diagnostics& diagnostics) {
     report(diagnostics, span, "E0206", fmt::format("`{}` is not available in this version", word),
            "a word of the language without an implementation yet");
@@ -56,6 +57,13 @@ void reportPlanned(std::string_view word, Span span, Diagnostics& diagnostics) {
 void DefinitionReader::unknownKind(const Node& node) const {
     auto& d = report(diagnostics_, node.nameSpan(), "E0215",
                      fmt::format("`{}` is not a kind of definition", node.name()), "unknown kind");
+    if (std::ranges::find(kControlWords, node.name()) != kControlWords.end()) {
+        d.message = fmt::format("scenes have no `{}`: they say what there is, not what to do", node.name());
+        d.help = "many of a kind are `instances` (`grid`, `scatter`, or places from a file); numbers are computed in "
+                 "quotes, "
+                 "`\"$r * 2\"`; anything else is for a program that writes scene files";
+        return;
+    }
     for (const TypeInfo& type : table_.all())
         if (type.name == node.name()) {
             d.help = fmt::format("`{}` is a type: write `{} {}`", type.name, keyword(type.kind), type.name);
@@ -85,7 +93,7 @@ void DefinitionReader::unknownType(Kind kind, const Value& word) const {
 }
 
 void DefinitionReader::setName(Definition& definition, const Value& word) const {
-    definition.name = word.text;
+    definition.name = prefix_ + std::string(word.text);
     definition.nameSpan = word.span;
     if (word.kind == ValueKind::string && !word.text.empty()) return;
     if (!isBareName(word.text))
@@ -193,7 +201,7 @@ void DefinitionReader::containerHead(const Node& node, Definition& definition) c
     const std::size_t count = node.valueCount();
     const bool named = count > 0 && !node.allNumbers() && node.value(0).isText();
     if (named && isPlacement(definition.kind)) {
-        definition.target = node.value(0).text;
+        definition.target = prefix_ + std::string(node.value(0).text);
         definition.targetSpan = place(node.value(0));
     } else if (named) {
         setName(definition, node.value(0));
@@ -251,7 +259,11 @@ void DefinitionReader::read(const Node& node, std::vector<Definition>& out, Plac
             report(diagnostics_, node.headSpan(), "E0212", "`param` belongs at the top level", "not in a group");
         return;
     }
-    if (isPlanned(word)) return reportPlanned(word, node.nameSpan(), diagnostics_);
+    if (isLayerWord(word)) {
+        report(diagnostics_, node.nameSpan(), "E0232", fmt::format("`{}` belongs at the top level of a file", word),
+               "not in a group");
+        return;
+    }
     if (word == "at") return reportPlanned("at (motion)", node.nameSpan(), diagnostics_);
     const auto kind = findKind(word);
     if (!kind) return unknownKind(node);
@@ -268,7 +280,7 @@ void DefinitionReader::read(const Node& node, std::vector<Definition>& out, Plac
     definition.damaged = node.damaged();
     // What a syntax error left of a head is no new error.
     Diagnostics ignored;
-    const DefinitionReader quiet(table_, ignored);
+    const DefinitionReader quiet(table_, ignored, prefix_);
     const DefinitionReader& head = node.damaged() ? quiet : *this;
     if (*kind == Kind::spectrum)
         head.spectrumHead(node, definition);

@@ -43,7 +43,9 @@ enum class Place : std::uint8_t { top, group }; // group: inside of a `group` or
 // that its block can still be checked.
 class DefinitionReader {
   public:
-    DefinitionReader(const TypeTable& table, Diagnostics& diagnostics) : table_(table), diagnostics_(diagnostics) {}
+    // All names are read with the prefix in front.
+    DefinitionReader(const TypeTable& table, Diagnostics& diagnostics, std::string prefix = {})
+        : table_(table), diagnostics_(diagnostics), prefix_(std::move(prefix)) {}
 
     void read(const Node&, std::vector<Definition>& out, Place) const;
 
@@ -65,10 +67,10 @@ class DefinitionReader {
 
     const TypeTable& table_;
     Diagnostics& diagnostics_;
+    const std::string prefix_;
 };
 
 // Words that the language reserves and this version does not implement: they are located errors (E0206).
-bool isPlanned(std::string_view word);
 void reportPlanned(std::string_view word, Span, Diagnostics&);
 
 } // namespace abbe::schema

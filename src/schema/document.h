@@ -120,6 +120,7 @@ class Document {
         std::string_view doc;
         std::string_view defaultText; // as it stands in the file: "-32.9 deg"
         bool used = false;            // its name stands somewhere in the tree
+        bool inText = false;          // in a text, which may be computed (schema/expression.h)
 
         const std::vector<Value>& values() const { return given.empty() ? written : given; }
     };

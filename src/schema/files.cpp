@@ -42,9 +42,17 @@ bool hasTile(const fs::path& path) {
 } // namespace
 
 std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diagnostics& diagnostics, bool tiles) {
+    auto path = lookUpFile(value, tree.directoryOf(value.span), diagnostics, tiles);
+    const auto insert = tree.inserts.find(value.span.file);
+    if (path && tree.namedFiles && (insert == tree.inserts.end() || insert->second.written))
+        tree.namedFiles->push_back({value.span, std::string(value.text), *path});
+    return path;
+}
+
+std::optional<fs::path> lookUpFile(const Value& value, const fs::path& directory, Diagnostics& diagnostics,
+                                   bool tiles) {
     const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
     const fs::path written(nameable ? value.text : std::string_view());
-    const fs::path& directory = tree.directoryOf(value.span);
     const fs::path path = written.is_absolute() ? written : directory / written;
     if (nameable && !mayName(directory, path)) {
         reportAt(diagnostics, value, "E0415", fmt::format("`{}` is outside of the pack", value.text), "not in the pack")
@@ -62,11 +70,7 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
                  "pipes and devices are not read");
         return std::nullopt;
     }
-    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) {
-        if (tree.namedFiles && !tree.inserts.contains(value.span.file))
-            tree.namedFiles->push_back({value.span, std::string(value.text), path});
-        return path;
-    }
+    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) return path;
     const std::string folder = written.is_absolute() ? written.parent_path().string() : directory.string();
     auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),
                        fmt::format("looked in {}", folder.empty() ? "the current folder" : folder));

@@ -14,6 +14,10 @@ namespace abbe::schema {
 // name stands for a number from 1001 to 1999, and one such file is enough.
 std::optional<std::filesystem::path> findFile(const Value&, const SceneTree&, Diagnostics&, bool tiles = false);
 
+// The same in a folder, of a file that is not noted as one that a definition names.
+std::optional<std::filesystem::path> lookUpFile(const Value&, const std::filesystem::path& directory, Diagnostics&,
+                                                bool tiles = false);
+
 struct SpectrumFile {
     std::vector<double> numbers; // wavelength in nm, value, wavelength, …
     std::vector<int> lines;      // the line of each pair, from 1

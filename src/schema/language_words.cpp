@@ -69,8 +69,45 @@ LanguageWord headerWord() {
 LanguageWord paramWord() {
     return {"param",
             "Gives a value a name; `$NAME` stands for it anywhere in the file, and `-D NAME=VALUE` on the command line "
-            "replaces it. There are no expressions.",
+            "replaces it. It may be computed from others: `param r2 \"$r * 2\"`.",
             "param turn -32.9 deg \"rotation of the prism\"; shape box { transform { rotate y $turn } }",
+            {}};
+}
+
+LanguageWord includeWord() {
+    return {"include",
+            "Brings in what another scene file defines, with the units of that file. With `as=NAME` all its names "
+            "begin with "
+            "`NAME:`; a block of `param NAME VALUE` gives its parameters other values.",
+            "include \"room.scene\" as=set",
+            {{"as=", "a name", "", "The prefix of its names.", "include \"room.scene\" as=set"}}};
+}
+
+LanguageWord overrideWord() {
+    return {"override",
+            "`override KIND [NAME] { … }` replaces the properties that it names, and keeps the others. It stands "
+            "behind what it "
+            "changes. The only camera, film or render needs no name; `--set kind.name.property=value` is the same from "
+            "the command "
+            "line.",
+            "material skin diffuse { reflectance 0.5 }; shape box { material skin }; override material skin { "
+            "roughness 0.3 }",
+            {}};
+}
+
+LanguageWord removeWord() {
+    return {"remove",
+            "`remove KIND NAME` takes out a definition that stands before it.",
+            "light key point { power 1 W }; remove light key",
+            {}};
+}
+
+LanguageWord variantWord() {
+    return {"variant",
+            "`variant NAME { … }` holds overrides, removals and definitions that count when it is chosen: by "
+            "`--variant NAME`, or by "
+            "`variant NAME` without a block.",
+            "light sky { luminance 100 nits }; variant dusk { override light sky { luminance 5 nits } }",
             {}};
 }
 
@@ -103,7 +140,8 @@ LanguageWord momentWord() {
 const KindText& kindText(Kind kind) { return kKindTexts[static_cast<std::size_t>(kind)]; }
 
 std::span<const LanguageWord> languageWords() {
-    static const std::array kWords = {headerWord(), paramWord(), transformWord(), momentWord()};
+    static const std::array kWords = {headerWord(), paramWord(),   includeWord(),   overrideWord(),
+                                      removeWord(), variantWord(), transformWord(), momentWord()};
     return kWords;
 }
 

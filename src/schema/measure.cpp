@@ -1,9 +1,9 @@
 #include "schema/measure.h"
 
+#include "schema/expression.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -11,9 +11,11 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr const char* kNoExpressions = "there are no expressions: write the result";
+constexpr const char* kInQuotes = "what is to be computed stands in quotes: `\"$r * 2\"`";
 
-bool isOperator(const Value& word) { return word.text == "*" || word.text == "+" || word.text == "-"; }
+bool isOperator(const Value& word) {
+    return word.text == "*" || word.text == "+" || word.text == "-" || word.text == "^";
+}
 
 // What a light unit measures; empty for other dimensions.
 std::string_view lightMeaning(Dimension d) {
@@ -48,9 +50,7 @@ std::string unitList(std::span<const Dimension> dimensions) {
     return text;
 }
 
-bool isNumeric(const Value& value) {
-    return value.kind == ValueKind::number || (value.kind == ValueKind::string && parseFraction(value.text));
-}
+bool isNumeric(const Value& value) { return value.kind == ValueKind::number || isComputed(value); }
 
 std::string countText(std::size_t count) { return count == 1 ? "one number" : fmt::format("{} numbers", count); }
 
@@ -58,28 +58,6 @@ std::string countText(std::size_t count) { return count == 1 ? "one number" : fm
 
 Measure measureOf(const FieldInfo& field) {
     return {field.name, field.dimensions, field.lower, field.upper, field.note, field.example};
-}
-
-std::optional<double> parseFraction(std::string_view text) {
-    const auto slash = text.find('/');
-    if (slash == std::string_view::npos || slash == 0 || slash + 1 == text.size()) return std::nullopt;
-    double parts[2] = {};
-    const std::string_view sides[2] = {text.substr(0, slash), text.substr(slash + 1)};
-    for (int i = 0; i < 2; ++i) {
-        const char* const end = sides[i].data() + sides[i].size();
-        const auto [stop, error] = std::from_chars(sides[i].data(), end, parts[i]);
-        if (error != std::errc() || stop != end) return std::nullopt;
-    }
-    return parts[0] / parts[1];
-}
-
-std::optional<MeasuredFraction> parseMeasuredFraction(std::string_view text) {
-    const auto space = text.find(' ');
-    if (space == std::string_view::npos) return std::nullopt;
-    const auto unit = text.find_first_not_of(' ', space);
-    const auto value = parseFraction(text.substr(0, space));
-    if (!value || unit == std::string_view::npos) return std::nullopt;
-    return MeasuredFraction{*value, text.substr(unit)};
 }
 
 std::string plain(double value) {
@@ -149,7 +127,7 @@ void MeasureReader::unknownUnit(const Value& word) const {
                        meant.empty() ? "unknown unit" : didYouMean(meant));
     if (!meant.empty()) return;
     if (isOperator(word)) {
-        d.help = kNoExpressions;
+        d.help = kInQuotes;
         return;
     }
     std::vector<std::string_view> units;
@@ -188,21 +166,60 @@ bool MeasureReader::isPercent(const Value& number, const Value& word) const {
     return true;
 }
 
-std::optional<double> MeasureReader::number(const Value& value) const {
-    const auto fraction = value.kind == ValueKind::string ? parseFraction(value.text) : std::nullopt;
-    if (value.kind != ValueKind::number && !fraction) {
-        auto& d =
-            reportAt(diagnostics_, value, "E0314", fmt::format("`{}` needs a number", measure_.name), "not a number");
-        if (!measure_.example.empty()) d.help = fmt::format("for example `{}`", measure_.example);
-        return std::nullopt;
-    }
-    const double x = fraction ? *fraction : value.number;
+bool MeasureReader::writtenNumber(const Value& value) const {
+    if (isNumeric(value)) return true;
+    auto& d = reportAt(diagnostics_, value, "E0314", fmt::format("`{}` needs a number", measure_.name), "not a number");
+    if (!measure_.example.empty()) d.help = fmt::format("for example `{}`", measure_.example);
+    return false;
+}
+
+std::optional<double> MeasureReader::finite(const Value& value, double x) const {
     if (std::isfinite(x)) return x;
     reportAt(diagnostics_, value, "E0305", fmt::format("`{}` must be a finite number", measure_.name),
-             fraction        ? "a division by zero"
-             : std::isnan(x) ? "is not a number"
-                             : "is too large or infinite");
+             std::isnan(x) ? "is not a number" : "is too large or infinite");
     return std::nullopt;
+}
+
+std::optional<double> MeasureReader::number(const Value& value) const {
+    if (!writtenNumber(value)) return std::nullopt;
+    if (value.kind == ValueKind::number) return finite(value, value.number);
+    const auto amount = compute(value, header_.parameters.get(), diagnostics_);
+    if (!amount || amount->isPlain()) return amount ? std::optional(amount->value) : std::nullopt;
+    reportAt(diagnostics_, value, "E0302",
+             fmt::format("`{}` is a plain number here, not {}", measure_.name, describe(*amount)),
+             "comes to a quantity with a unit");
+    return std::nullopt;
+}
+
+std::optional<double> MeasureReader::computed(const Value& value, Scale& scale, bool unitBehind) const {
+    const auto amount = compute(value, header_.parameters.get(), diagnostics_);
+    if (!amount) return std::nullopt;
+    if (amount->isPlain()) return finite(value, amount->value * scale.factor);
+    const auto dimension = amount->dimension();
+    if (!dimension || std::ranges::find(measure_.dimensions, *dimension) == measure_.dimensions.end()) {
+        std::string kinds;
+        for (const Dimension d : measure_.dimensions)
+            kinds += fmt::format("{}{}", kinds.empty() ? "" : " or ", describe(d));
+        auto& d = reportAt(diagnostics_, value, "E0302",
+                           fmt::format("`{}` is {}, not {}", measure_.name, kinds, describe(*amount)),
+                           "comes to the wrong quantity");
+        if (!measure_.note.empty()) d.notes.emplace_back(measure_.note);
+        return std::nullopt;
+    }
+    if (unitBehind) {
+        reportAt(diagnostics_, value, "E0302", fmt::format("`{}` has its unit twice", measure_.name),
+                 fmt::format("comes to {} already: remove the unit behind it", describe(*dimension)));
+        return std::nullopt;
+    }
+    if (scale.dimension != *dimension) scale = {1, *dimension, siUnit(*dimension)};
+    return finite(value, amount->value);
+}
+
+std::optional<double> MeasureReader::scaled(const Value& value, Scale& scale, bool unitBehind) const {
+    if (!writtenNumber(value)) return std::nullopt;
+    if (value.kind != ValueKind::number) return computed(value, scale, unitBehind);
+    const auto x = finite(value, value.number);
+    return x ? std::optional(*x * scale.factor) : std::nullopt;
 }
 
 bool MeasureReader::inRange(double value, const Scale& scale, const Value& at) const {
@@ -211,8 +228,9 @@ bool MeasureReader::inRange(double value, const Scale& scale, const Value& at) c
     // Beyond all numbers of scenes only the bound that is exceeded is of interest.
     if (value < measure_.lower || value > measure_.upper || value > 0) lower = measure_.lower;
     if (value < measure_.lower || value > measure_.upper || value < 0) upper = measure_.upper;
-    const std::string shown =
-        scale.unit.empty() || at.text.empty() ? plain(value / scale.factor) : fmt::format("{} {}", at.text, scale.unit);
+    std::string shown = plain(value / scale.factor);
+    if (!scale.unit.empty() && !at.text.empty())
+        shown = fmt::format("{} {}", at.kind == ValueKind::number ? std::string(at.text) : shown, scale.unit);
     auto& d = reportAt(diagnostics_, at, "E0303",
                        fmt::format("`{}` {}", measure_.name, rangeText(lower, upper, scale.factor, scale.unit)),
                        fmt::format("is {}", shown));
@@ -234,23 +252,8 @@ void MeasureReader::wrongCount(const Entry& entry, std::size_t first, std::size_
     if (!measure_.example.empty()) d->help = fmt::format("for example `{}`", measure_.example);
 }
 
-// As `"1/48" s`, which is how it is written otherwise.
-std::optional<Row> MeasureReader::measuredFraction(const Value& value, const MeasuredFraction& parts) const {
-    Value word = value, number = value;
-    word.text = parts.unit;
-    number.kind = ValueKind::string;
-    number.text = value.text.substr(0, value.text.find(' '));
-    const auto scale = unit(word);
-    const auto x = this->number(number);
-    if (!scale || !x || !inRange(*x * scale->factor, *scale, number)) return std::nullopt;
-    return Row{{*x * scale->factor}, *scale};
-}
-
 std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std::size_t count) const {
     const std::size_t total = entry.count();
-    if (count == 1 && first + 1 == total && entry.value(first).kind == ValueKind::string)
-        if (const auto parts = parseMeasuredFraction(entry.value(first).text))
-            return measuredFraction(entry.value(first), *parts);
     std::size_t found = 0;
     while (first + found < total && isNumeric(entry.value(first + found))) ++found;
     if (found == 0 && first < total) {
@@ -262,7 +265,7 @@ std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std
         const Value next = entry.value(first + found + 1);
         const bool numberFollows = isNumeric(next) && findUnit(entry.value(first + found).text);
         reportAt(diagnostics_, next, "E0306", fmt::format("`{}` takes {}", measure_.name, countText(count)),
-                 isOperator(entry.value(first + found)) ? kNoExpressions
+                 isOperator(entry.value(first + found)) ? kInQuotes
                  : numberFollows && count > 1           ? "write the unit once, behind the last number"
                                                         : "unexpected");
         return std::nullopt;
@@ -273,17 +276,21 @@ std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std
         return std::nullopt;
     }
     if (hasUnit && count == 1 && isPercent(entry.value(first), entry.value(first + 1))) return std::nullopt;
-    const auto scale = hasUnit ? unit(entry.value(first + found)) : std::optional(defaultScale());
+    const auto written = hasUnit ? unit(entry.value(first + found)) : std::optional(defaultScale());
     Row result;
-    bool good = scale.has_value();
+    bool good = written.has_value();
+    Scale scale = written.value_or(defaultScale());
     for (std::size_t i = 0; i < count; ++i) {
         const Value value = entry.value(first + i);
-        const auto x = number(value);
-        good = good && x && inRange(*x * scale->factor, *scale, value);
-        if (good) result.values.push_back(*x * scale->factor);
+        // Each number of several may have a unit of its own in its text.
+        Scale own = written.value_or(scale);
+        const auto x = scaled(value, own, hasUnit && count == 1);
+        if (count == 1) scale = own;
+        good = good && x && inRange(*x, own, value);
+        if (good) result.values.push_back(*x);
     }
     if (!good) return std::nullopt;
-    result.scale = *scale;
+    result.scale = scale;
     return result;
 }
 
@@ -318,9 +325,10 @@ bool MeasureReader::append(const Entry& entry, std::size_t first, std::vector<do
     }
     for (std::size_t i = first; i < end; ++i) {
         const Value value = entry.value(i);
-        const auto x = number(value);
-        if (!x || !inRange(*x * scale.factor, scale, value)) return false;
-        out.push_back(*x * scale.factor);
+        Scale own = scale;
+        const auto x = scaled(value, own, false);
+        if (!x || !inRange(*x, own, value)) return false;
+        out.push_back(*x);
     }
     return true;
 }

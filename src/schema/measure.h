@@ -37,13 +37,6 @@ struct Row {
     Scale scale;
 };
 
-// "1/48 s", a fraction and its unit in one text, as its two parts; nothing if the text has no such form.
-struct MeasuredFraction {
-    double value = 0;
-    std::string_view unit;
-};
-std::optional<MeasuredFraction> parseMeasuredFraction(std::string_view);
-
 // Reads the values of `entry` from `first` on.
 class MeasureReader {
   public:
@@ -53,7 +46,7 @@ class MeasureReader {
     Scale defaultScale() const;
     // The scale of a unit word; nothing after a diagnostic.
     std::optional<Scale> unit(const Value& word) const;
-    // One finite number, or a fraction in quotes; nothing after a diagnostic. Not scaled.
+    // One finite plain number, perhaps computed (schema/expression.h); nothing after a diagnostic. Not scaled.
     std::optional<double> number(const Value&) const;
     // Exactly `count` numbers and perhaps a unit, and nothing behind them. Range and finiteness are checked.
     std::optional<Row> row(const Entry&, std::size_t first, std::size_t count) const;
@@ -71,16 +64,17 @@ class MeasureReader {
     void wrongDimension(const Value& word, const Unit&) const;
     bool isPercent(const Value& number, const Value& word) const;
     void unknownUnit(const Value& word) const;
-    std::optional<Row> measuredFraction(const Value&, const MeasuredFraction&) const;
+    bool writtenNumber(const Value&) const;
+    std::optional<double> finite(const Value&, double) const;
+    // A computed text; it sets the dimension and unit of `scale` if it has any of its own.
+    std::optional<double> computed(const Value&, Scale& scale, bool unitBehind) const;
+    std::optional<double> scaled(const Value&, Scale& scale, bool unitBehind) const;
     void wrongCount(const Entry&, std::size_t first, std::size_t count, std::size_t found) const;
 
     Measure measure_;
     const Header& header_;
     Diagnostics& diagnostics_;
 };
-
-// The value of "1/48", or nothing if the text has no such form. Division by zero gives an infinity.
-std::optional<double> parseFraction(std::string_view);
 
 // A number as a person would write it: six digits, no trailing zeros.
 std::string plain(double);

@@ -1,5 +1,7 @@
 #include "schema/definition_reader.h"
 #include "schema/entry.h"
+#include "schema/expression.h"
+#include "schema/layers.h"
 #include "schema/scene_tree.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
@@ -55,7 +57,7 @@ void collectPlaced(const Definition& owner, std::vector<const Definition*>& out)
 // Reports that nothing of this kind has the name that `reference` names, with the nearest one. `help` if there is none.
 void reportTarget(const SceneTree& tree, const Definition& reference, Kind kind, const std::string& help,
                   Diagnostics& diagnostics) {
-    const auto meant = tree.nearestName({&kind, 1}, reference.target);
+    const auto meant = tree.nearestName({&kind, 1}, reference.target); // both whole names
     auto& d = report(diagnostics, reference.targetSpan, "E0202",
                      fmt::format("no {} is named `{}`", keyword(kind), reference.target),
                      meant.empty() ? "unknown name" : didYouMean(meant));
@@ -63,6 +65,7 @@ void reportTarget(const SceneTree& tree, const Definition& reference, Kind kind,
         d.help = help;
     else
         d.related.push_back({tree.find(kind, meant)->nameSpan, "defined here"});
+    tree.noteRemoved(kind, reference.target, {}, d);
 }
 
 void checkTargets(const SceneTree& tree, const std::vector<const Definition*>& instances, Diagnostics& diagnostics) {
@@ -152,14 +155,26 @@ bool mayBeMisspelt(std::string_view name, const Texts& texts, std::size_t& budge
     return std::ranges::any_of(texts, [&](std::string_view t) { return !nearest(t, {name}).empty(); });
 }
 
-void checkUnused(const SceneTree& tree, const std::vector<const Definition*>& instances, Diagnostics& diagnostics) {
+// What a file includes is there to be chosen from.
+bool isIncluded(const SceneTree& tree, const Definition& d) {
+    const auto found = tree.inserts.find(d.nameSpan.file);
+    return found != tree.inserts.end() && found->second.written;
+}
+
+// `unchosen`: what variants hold that are not part of the scene, but may be.
+void checkUnused(const SceneTree& tree, const std::vector<const Definition*>& instances,
+                 const std::vector<Node>& unchosen, Diagnostics& diagnostics) {
     std::size_t budget = 1'000'000;
     Texts texts, targets;
     collectTexts(tree.definitions, texts);
+    for (const Node& node : unchosen) {
+        collectTexts(node, texts);
+        collectTexts(node, targets);
+    }
     for (const Definition* instance : instances) targets.insert(instance->target);
     for (const Definition* d : tree.index.sorted) {
         const bool slot = d->kind == Kind::material || d->kind == Kind::spectrum || d->kind == Kind::texture;
-        if (!slot && d->kind != Kind::object) continue;
+        if ((!slot && d->kind != Kind::object) || isIncluded(tree, *d)) continue;
         const Texts& uses = slot ? texts : targets;
         if (uses.contains(d->name) || mayBeMisspelt(d->name, uses, budget)) continue;
         diagnostics.warning("W0201", d->nameSpan, fmt::format("{} `{}` is never used", keyword(d->kind), d->name),
@@ -181,10 +196,14 @@ void checkNames(const SceneTree& tree, const TypeTable& table, Diagnostics& diag
         auto& error = report(diagnostics, d->nameSpan, "E0203",
                              fmt::format("{} `{}` is defined twice", keyword(d->kind), d->name), "second definition");
         error.related.push_back({first->nameSpan, "the first definition is here"});
+        error.help =
+            fmt::format("to change the first one in a layer, write `override {0} {1} {{ … }}`; to put another in its "
+                        "place, `remove {0} {1}` before it",
+                        keyword(d->kind), d->name);
     }
 }
 
-void checkUsage(const SceneTree& tree, Diagnostics& diagnostics) {
+void checkUsage(const SceneTree& tree, const std::vector<Node>& unchosen, Diagnostics& diagnostics) {
     std::vector<const Definition*> instances;
     collectInstances(tree.definitions, instances);
     checkTargets(tree, instances, diagnostics);
@@ -192,7 +211,7 @@ void checkUsage(const SceneTree& tree, Diagnostics& diagnostics) {
     CycleCheck cycles(tree, diagnostics);
     for (const Definition* d : tree.index.sorted)
         if (d->kind == Kind::object) cycles.from(d);
-    if (!diagnostics.hasErrors()) checkUnused(tree, instances, diagnostics);
+    if (!diagnostics.hasErrors()) checkUnused(tree, instances, unchosen, diagnostics);
 }
 
 bool byName(const Definition* a, const Definition* b) {
@@ -237,6 +256,31 @@ std::string_view SceneTree::nearestName(std::span<const Kind> kinds, std::string
     return nearest(word, names);
 }
 
+const Definition* SceneTree::find(Kind kind, std::string_view name, Span at) const {
+    const auto found = inserts.find(at.file);
+    const bool prefixed = found != inserts.end() && !found->second.prefix.empty() && !name.empty();
+    return prefixed ? find(kind, found->second.prefix + std::string(name)) : find(kind, name);
+}
+
+std::string SceneTree::fullName(Span at, std::string_view name) const {
+    const auto found = inserts.find(at.file);
+    return found == inserts.end() ? std::string(name) : found->second.prefix + std::string(name);
+}
+
+std::string_view SceneTree::nearestName(std::span<const Kind> kinds, std::string_view word, Span at) const {
+    const std::string full = fullName(at, word);
+    const std::size_t prefix = full.size() - word.size();
+    const std::string_view found = nearestName(kinds, full);
+    const bool reachable = found.size() > prefix && found.starts_with(std::string_view(full).substr(0, prefix));
+    return reachable ? found.substr(prefix) : std::string_view();
+}
+
+void SceneTree::noteRemoved(Kind kind, std::string_view name, Span at, Diagnostic& d) const {
+    if (removed.empty()) return;
+    if (const auto found = removed.find({kind, fullName(at, name)}); found != removed.end())
+        d.related.push_back({found->second, "removed here"});
+}
+
 const Header& SceneTree::headerOf(Span span) const {
     const auto found = inserts.find(span.file);
     return found == inserts.end() ? header : found->second.header;
@@ -256,25 +300,115 @@ std::vector<Definition> readInsert(SceneTree& tree, Insert insert, const TypeTab
     return definitions;
 }
 
-SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& table, std::filesystem::path directory,
-                  Diagnostics& diagnostics, const std::function<void(SceneTree&)>& complete) {
+namespace {
+
+bool isDamagedText(const Document& document) {
+    return std::ranges::any_of(document.nodes, [](const auto& node) { return node.damaged; });
+}
+
+// What holds for the text of a layer that is not the scene's own.
+void addInsert(SceneTree& tree, const LayerFile& layer, const Header& header, std::string source) {
+    tree.damaged |= isDamagedText(*layer.document);
+    tree.inserts.emplace(layer.document->file, Insert{layer.document, header, layer.path.parent_path(),
+                                                      std::move(source), true, layer.prefix, layer.includer});
+}
+
+// Directions mean the same in all files of a scene.
+void checkAxes(const SceneTree& tree, const Header& header, const LayerFile& layer, Diagnostics& diagnostics) {
+    if (header.zUp == tree.header.zUp) return;
+    const Span at = header.span.valid() ? header.span : Span{layer.document->file, 0, 0};
+    auto& d = report(
+        diagnostics, at, "E0234",
+        fmt::format("`up={}` here, and `up={}` in the scene", header.zUp ? "z" : "y", tree.header.zUp ? "z" : "y"),
+        "all files of a scene have the same vertical axis");
+    if (tree.header.span.valid()) d.related.push_back({tree.header.span, "the scene's header"});
+    d.help = "include it where `up` is the same, and turn what it shows by `transform` of a group";
+}
+
+} // namespace
+
+namespace {
+
+SceneTree resolveAll(const LayerFiles& layers, const TypeTable& table, Diagnostics& diagnostics,
+                     const std::function<void(SceneTree&)>& complete) {
     SceneTree tree;
-    tree.document = std::move(document);
+    const LayerFile& own = layers.files.front();
+    const auto scopes = std::make_shared<ParameterScopes>();
+    tree.document = own.document;
     tree.namedFiles = std::make_shared<std::vector<NamedFile>>();
-    tree.damaged = std::ranges::any_of(tree.document->nodes, [](const auto& node) { return node.damaged; });
-    tree.directory = std::move(directory);
+    tree.damaged = isDamagedText(*tree.document);
+    tree.directory = own.path.parent_path();
     tree.header = readHeader(*tree.document, diagnostics);
-    const DefinitionReader reader(table, diagnostics);
-    for (const Node node : tree.document->roots())
-        if (!isHeader(node)) reader.read(node, tree.definitions, Place::top);
+    for (std::size_t i = 0; i < layers.files.size(); ++i) {
+        const LayerFile& layer = layers.files[i];
+        scopes->add(layer.document->file, layer.document);
+        if (i == 0) continue;
+        Header header = readHeader(*layer.document, diagnostics);
+        checkAxes(tree, header, layer, diagnostics);
+        header.parameters = scopes;
+        addInsert(tree, layer, header, layer.path.string());
+    }
+    tree.header.parameters = scopes;
+    for (const auto& set : layers.sets) addInsert(tree, {set, own.path}, tree.header, {});
+    tree.includes = layers.included;
+    tree.given = layers.given;
+    for (const auto& [name, span] : layers.chosen) tree.chosen.push_back(name);
+    const std::vector<Node> unchosen = readLayers(layers, tree, table, diagnostics);
     if (complete) complete(tree);
     collectNamed(tree.definitions, tree.index.sorted);
     std::ranges::stable_sort(tree.index.sorted, byName);
     tree.index.filled = true;
     checkNames(tree, table, diagnostics);
     checkSpectra(tree, diagnostics);
-    checkUsage(tree, diagnostics);
+    checkUsage(tree, unchosen, diagnostics);
     return tree;
+}
+
+} // namespace
+
+namespace {
+
+// Counts what `found` has and does not list, as one more of a code of which no more are listed.
+void countUnlisted(const Diagnostics& found, Severity severity, std::size_t missing, Diagnostics& to) {
+    std::map<std::string_view, std::size_t> listed;
+    for (const Diagnostic& d : found.all()) {
+        if (d.severity != severity || ++listed[d.code] < Diagnostics::kMostOfACode) continue;
+        for (; missing > 0; --missing) to.add(d);
+        return;
+    }
+}
+
+} // namespace
+
+void addWithIncluders(const SceneTree& tree, const Diagnostics& found, std::size_t known, Diagnostics& to) {
+    for (const Diagnostic& one : std::span(found.all()).subspan(known)) {
+        Diagnostic d = one;
+        auto insert = tree.inserts.find(d.span.file);
+        for (; insert != tree.inserts.end() && insert->second.includer.valid();
+             insert = tree.inserts.find(insert->second.includer.file))
+            d.related.push_back({insert->second.includer, "included from here"});
+        to.add(std::move(d));
+    }
+    countUnlisted(found, Severity::error, found.errorCount() - std::min(found.errorCount(), to.errorCount()), to);
+    countUnlisted(found, Severity::warning, found.warningCount() - std::min(found.warningCount(), to.warningCount()),
+                  to);
+}
+
+SceneTree resolve(const LayerFiles& layers, const TypeTable& table, Diagnostics& diagnostics,
+                  const std::function<void(SceneTree&)>& complete) {
+    if (layers.files.size() == 1) return resolveAll(layers, table, diagnostics, complete);
+    Diagnostics found = diagnostics; // what is wrong so far counts
+    const std::size_t known = found.all().size();
+    SceneTree tree = resolveAll(layers, table, found, complete);
+    addWithIncluders(tree, found, known, diagnostics);
+    return tree;
+}
+
+SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& table, std::filesystem::path directory,
+                  Diagnostics& diagnostics, const std::function<void(SceneTree&)>& complete) {
+    LayerFiles alone;
+    alone.files.push_back({std::move(document), std::move(directory) / "scene"});
+    return resolve(alone, table, diagnostics, complete);
 }
 
 } // namespace abbe::schema

@@ -27,13 +27,17 @@ std::optional<RgbSpaceName> findRgbSpace(std::string_view idOrAlias);
 std::string_view rgbSpaceId(RgbSpaceName);
 const RgbSpace& rgbSpace(RgbSpaceName);
 
-// `scene 1 length=mm rgb=acescg up=y`
+class ParameterScopes;
+
+// `scene 1 length=mm rgb=acescg up=y`, and what else holds for the texts of a scene.
 struct Header {
     int edition = 1;
     double length = 1; // metres per unit of a bare length
     RgbSpaceName rgb = RgbSpaceName::linRec709;
     bool zUp = false; // rotate the scene so that z is up
     Span span;
+    // The parameters that texts in the place of numbers may name; null: none.
+    std::shared_ptr<const ParameterScopes> parameters = nullptr;
 };
 
 // `kind [name] type [arguments] { properties }`, named or inline in a slot.
@@ -46,6 +50,7 @@ struct Definition {
     std::vector<Value> arguments;     // after the type word; spectrum: everything after the name
     std::vector<Key> keys;            // key=value after the arguments
     bool damaged = false;             // a syntax error took something out of the head
+    bool removed = false;             // by a layer that stands behind it; soon gone
     std::vector<Node> properties;     // everything in the block that is not a nested definition
     std::vector<Definition> children; // nested definitions of group and object
     std::string target;               // what instance, instances (an object) and atmosphere (a medium) place
@@ -77,10 +82,24 @@ struct Insert {
     std::shared_ptr<const Document> document;
     Header header;
     std::filesystem::path directory;
-    std::string source; // the file that the text was made of
+    std::string source;      // the file that it is, or that the text was made of
+    bool written = false;    // a file of the scene (`include`, `--set`), and not made of a model
+    std::string prefix = {}; // of the names in it, those that it defines and those that it refers to: "car:"
+    Span includer = {};      // the name in the `include` node that brings it in, or nowhere
 };
 
-// Everything that one file defines. Holds views into `document`.
+// Adds those of `found` from the first `known` on, each with the chain of files that led to where it stands.
+struct SceneTree;
+void addWithIncluders(const SceneTree&, const Diagnostics& found, std::size_t known, Diagnostics& to);
+
+// A variant that a file of the scene defines.
+struct VariantName {
+    std::string name; // with the prefix of its file
+    Span span;        // of the name
+    bool chosen = false;
+};
+
+// Everything that a scene defines, from its file and those that it includes. Holds views into the documents.
 struct SceneTree {
     Header header;
     std::vector<Definition> definitions;
@@ -94,6 +113,14 @@ struct SceneTree {
     std::filesystem::path made;       // the folder that holds the files that were made for them, or empty
     NameIndex index;                  // filled by resolve()
     bool damaged = false;             // a syntax error took something out of a node
+    // What is in force of all files, in order: headers, definitions, overrides, removals, and those of chosen variants.
+    std::vector<Node> statements;
+    std::vector<NamedFile> includes;                      // the files of `include` nodes
+    std::vector<VariantName> variants;                    // in the order of the files
+    std::vector<std::string> chosen;                      // variants that the command line chose, in its order
+    std::map<std::pair<Kind, std::string>, Span> removed; // where names were removed
+    // Parameters of included files that the command line set, by their names from here: "car:turn".
+    std::vector<std::pair<std::string, std::vector<Value>>> given;
 
     // What holds for the text at a place: that of an insert, or of the scene.
     const Header& headerOf(Span) const;
@@ -101,12 +128,19 @@ struct SceneTree {
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
+    // The whole name of what the text at a place calls `name`: in a file that is included `as=car` it begins `car:`.
+    std::string fullName(Span at, std::string_view name) const;
+    const Definition* find(Kind, std::string_view name, Span at) const;
+    // Says where a name was removed that is now unknown.
+    void noteRemoved(Kind, std::string_view name, Span at, Diagnostic&) const;
 
     // What is compared with names for suggestions, in all: about a second. More unknown names are reported without one.
     static constexpr std::size_t kMostCompared = 10'000'000;
     // The nearest name (see nearest) of a definition of one of the kinds; nothing once kMostCompared is spent.
     // Requires: the index is filled.
     std::string_view nearestName(std::span<const Kind>, std::string_view word) const;
+    // The same for what the text at a place calls `word`; the name as it is called there, so without the prefix.
+    std::string_view nearestName(std::span<const Kind>, std::string_view word, Span at) const;
 };
 
 // The spectrum values of the language, as written and checked for arity and units, not yet a curve.
@@ -154,9 +188,13 @@ class Resolver {
     virtual const Texture* texture(const TextureRequest&, Diagnostics&) = 0;
 };
 
-// First pass over a document: header, kinds, names, types. Unknown words are errors with a suggestion, names are
-// unique per kind, missing types get the kind's default. `complete` may change the definitions before names are
-// checked.
+// First pass over the files of a scene: headers, kinds, names, types, layers. Unknown words are errors with a
+// suggestion, names are unique per kind, missing types get the kind's default. `complete` may change the definitions
+// before names are checked.
+struct LayerFiles;
+SceneTree resolve(const LayerFiles&, const TypeTable&, Diagnostics&,
+                  const std::function<void(SceneTree&)>& complete = {});
+// The same for a scene of one document, which includes nothing.
 SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesystem::path directory, Diagnostics&,
                   const std::function<void(SceneTree&)>& complete = {});
 

@@ -1,6 +1,7 @@
 #include "schema/spectrum_reader.h"
 
 #include "schema/definition_reader.h"
+#include "schema/expression.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
 #include "spectrum/named_spectra.h"
@@ -158,9 +159,11 @@ class SpectrumReader {
         } else if (!first.isText()) {
             reportAt(diagnostics_, first, "E0314", fmt::format("`{}` needs a spectrum", use_.name), "not a spectrum");
         } else if (const auto* named = use_.role && entry_.count() == 1 && !entry_.hasBlock()
-                                           ? tree_.find(Kind::spectrum, first.text)
+                                           ? tree_.find(Kind::spectrum, first.text, place(first))
                                            : nullptr) {
             return fromDefinition(*named);
+        } else if (isComputed(first)) {
+            good = noBlock() && flat();
         } else if (const SpectrumForm* form = findSpectrumForm(first.text)) {
             good = formFits(*form, first) && this->form(*form);
         } else {
@@ -173,8 +176,9 @@ class SpectrumReader {
     std::optional<SpectrumValue> fromDefinition(const Definition& definition) {
         if (definition.damaged || definition.arguments.empty()) return std::nullopt; // reported already
         const Value first = definition.arguments[0];
-        const SpectrumForm* form = first.isText() ? findSpectrumForm(first.text) : nullptr;
-        if (first.isText() && !form) return std::nullopt;                   // reported already
+        const bool word = first.isText() && !isComputed(first);
+        const SpectrumForm* form = word ? findSpectrumForm(first.text) : nullptr;
+        if (word && !form) return std::nullopt;                             // reported already
         if (form && !formFits(*form, entry_.value(0))) return std::nullopt; // the use is wrong, not the definition
         const Entry entry(definition.name, definition.span, definition.arguments, definition.keys);
         Diagnostics found, used;
@@ -218,13 +222,14 @@ class SpectrumReader {
         std::vector<std::string_view> forms;
         for (const SpectrumForm& form : spectrumForms()) forms.push_back(form.name);
         const bool name = entry_.count() == 1;
-        auto meant = name && use_.role ? tree_.nearestName(kinds, word.text) : std::string_view();
+        auto meant = name && use_.role ? tree_.nearestName(kinds, word.text, place(word)) : std::string_view();
         if (meant.empty()) meant = nearest(word.text, forms);
         auto& d = reportAt(diagnostics_, word, name ? "E0202" : "E0311",
                            name ? fmt::format("no spectrum is named `{}`", word.text)
                                 : fmt::format("`{}` is not a form of spectrum", word.text),
                            meant.empty() ? "unknown" : didYouMean(meant));
-        if (const Definition* definition = tree_.find(Kind::spectrum, meant))
+        if (name) tree_.noteRemoved(Kind::spectrum, word.text, place(word), d);
+        if (const Definition* definition = tree_.find(Kind::spectrum, meant, place(word)))
             d.related.push_back({definition->nameSpan, "defined here"});
         else if (parseHex(word.text))
             suggestHex(word, d);
@@ -384,6 +389,7 @@ class SpectrumReader {
         constexpr std::array dimensions = {Dimension::length};
         Header nanometres; // a bare wavelength is in nm whatever the header says
         nanometres.length = 1e-9;
+        nanometres.parameters = tree_.headerOf(entry_.span()).parameters;
         // The bounds are a hair wide: 830 times 1e-9 need not round to 830e-9.
         const MeasureReader reader({"line", dimensions, 359.99999e-9, 830.00001e-9, {}, "line 589.3 nm"}, nanometres,
                                    diagnostics_);

@@ -108,16 +108,17 @@ TEST_CASE("a picture in the place of a spectrum or number") {
           "material m diffuse { gloss image \"wear.EXR\" space=data }");
 }
 
-TEST_CASE("there are no expressions") {
+TEST_CASE("what is computed stands in quotes") {
     const auto twice = loadBody("param r 2 cm\nshape sphere { radius $r*2 }");
     CHECK(twice->codes() == "E0204");
-    CHECK(twice->get("E0204").message == "`$r*2` is an expression, and scenes have none");
-    CHECK(twice->get("E0204").label == "write `4 cm`");
-    CHECK(loadBody("param r 2\nshape sphere { radius $r-0.5 }")->get("E0204").label == "write `1.5`");
-    CHECK(loadBody("param r 2\nshape sphere { radius $q*2 }")->get("E0204").label == "is not calculated");
+    CHECK(twice->get("E0204").label == "write `\"$r * 2\"`");
+    CHECK(fixedBody("param r 2 cm\nshape sphere { radius $r*2 }") ==
+          "param r 2 cm\nshape sphere { radius \"$r * 2\" }");
+    CHECK(loadBody("param r 2\nshape sphere { radius $r-0.5 }")->get("E0204").label == "write `\"$r - 0.5\"`");
     CHECK(loadBody("param two-words 2\nshape sphere { radius $two-words }")->codes().empty());
-    CHECK(inSphere("radius 2*3")->get("E0117").label == "there are no expressions: write the result");
-    CHECK(inSphere("radius 2 * 3")->human().find("there are no expressions") != std::string::npos);
+    CHECK(loadBody("param a 2\nparam b $a\nshape sphere { radius $b }")->get("E0223").label == "write `\"$a\"`");
+    CHECK(inSphere("radius 2*3")->get("E0117").label == "what is to be computed stands in quotes: `\"$r * 2\"`");
+    CHECK(inSphere("radius 2 * 3")->human().find("what is to be computed stands in quotes") != std::string::npos);
 }
 
 TEST_CASE("types of other programs") {

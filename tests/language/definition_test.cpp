@@ -47,12 +47,6 @@ TEST_CASE("heads with mistakes") {
 }
 
 TEST_CASE("words of later versions are located errors") {
-    for (const char* word : {"include", "override", "remove", "variant"}) {
-        const auto l = loadBody(std::string(word) + " a");
-        CHECK(l->codes() == "E0206");
-        CHECK(l->get("E0206").message == "`" + std::string(word) + "` is not available in this version");
-        CHECK(l->text(l->get("E0206").span) == word);
-    }
     CHECK(loadBody("shape sphere { at 0 s { radius 1 } }")->codes() == "E0206");
     CHECK(loadBody("light sky { radiance image \"a.exr\" }")->codes() == "E0206");
 }

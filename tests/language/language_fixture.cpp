@@ -193,15 +193,15 @@ const Texture* RecordingResolver::texture(const TextureRequest& use, Diagnostics
 
 namespace {
 
-void bindAll(Loaded& loaded, const std::vector<Definition>& definitions) {
+void bindAll(Loaded& loaded, const std::vector<Definition>& definitions, Diagnostics& diagnostics) {
     for (const Definition& d : definitions) {
-        bindAll(loaded, d.children);
+        bindAll(loaded, d.children, diagnostics);
         if (d.kind == Kind::group || d.kind == Kind::object || d.kind == Kind::instance || d.kind == Kind::instances ||
             d.kind == Kind::atmosphere || d.kind == Kind::spectrum)
             continue;
         const std::string key = std::string(keyword(d.kind)) + (d.name.empty() ? "" : " " + d.name);
         Params params;
-        bind(d, loaded.tree, loaded.types, loaded.resolver, d.type ? &params : nullptr, loaded.diagnostics);
+        bind(d, loaded.tree, loaded.types, loaded.resolver, d.type ? &params : nullptr, diagnostics);
         loaded.params[key] = params;
     }
 }
@@ -224,12 +224,32 @@ const Diagnostic& Loaded::get(std::string_view code) const {
     return none;
 }
 
-std::unique_ptr<Loaded> load(std::string text, std::filesystem::path directory) {
+std::string Loaded::names() const {
+    std::string text;
+    const auto list = [&](const auto& self, const std::vector<Definition>& definitions) -> void {
+        for (const Definition& d : definitions) {
+            text +=
+                fmt::format("{}{}{}{}", text.empty() ? "" : ", ", keyword(d.kind), d.name.empty() ? "" : " ", d.name);
+            self(self, d.children);
+        }
+    };
+    list(list, tree.definitions);
+    return text;
+}
+
+std::unique_ptr<Loaded> load(std::string text, std::filesystem::path directory, const Choices& choices) {
     auto loaded = std::make_unique<Loaded>();
     const FileId file = loaded->map.add("test.scene", std::move(text));
-    const auto document = parse(loaded->map, file, {}, loaded->diagnostics);
-    loaded->tree = resolve(document, loaded->types, std::move(directory), loaded->diagnostics);
-    bindAll(*loaded, loaded->tree.definitions);
+    LayerOptions options{{}, choices.variants, choices.sets};
+    for (const std::string& define : choices.defines)
+        if (auto given = readOverride(loaded->map, define, loaded->diagnostics))
+            options.defines.push_back(std::move(*given));
+    const auto files = readLayerFiles(loaded->map, file, directory / "test.scene", options, loaded->diagnostics);
+    loaded->tree = resolve(files, loaded->types, loaded->diagnostics);
+    Diagnostics found = loaded->diagnostics;
+    const std::size_t known = found.all().size();
+    bindAll(*loaded, loaded->tree.definitions, found);
+    addWithIncluders(loaded->tree, found, known, loaded->diagnostics); // as buildScene() does
     return loaded;
 }
 

@@ -4,7 +4,7 @@
 #include "base/diagnostic.h"
 #include "base/diagnostic_format.h"
 #include "base/source.h"
-#include "parser/parse.h"
+#include "parser/layer_files.h"
 #include "schema/scene_tree.h"
 #include "spectrum/curve.h"
 
@@ -87,9 +87,17 @@ struct Loaded {
     const Diagnostic& get(std::string_view code) const;
     std::string text(Span span) const { return std::string(map.text(span)); }
     std::string human() const { return formatHuman(diagnostics, map); }
+    // "kind name" of all definitions, nested ones behind theirs.
+    std::string names() const;
 };
 
-std::unique_ptr<Loaded> load(std::string text, std::filesystem::path directory = ".");
+// The command line's part: `-D` as "name=value", variants, and `--set`.
+struct Choices {
+    std::vector<std::string> defines = {}, variants = {}, sets = {};
+};
+
+// The text stands for the file `test.scene` of the folder.
+std::unique_ptr<Loaded> load(std::string text, std::filesystem::path directory = ".", const Choices& = {});
 
 // The same with `scene 1` in front, so that the missing edition is no warning.
 inline std::unique_ptr<Loaded> loadBody(const std::string& text, std::filesystem::path directory = ".") {

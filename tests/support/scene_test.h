@@ -3,7 +3,7 @@
 
 #include "base/diagnostic_format.h"
 #include "base/source.h"
-#include "parser/parse.h"
+#include "parser/layer_files.h"
 #include "parser/presets.h"
 #include "rendering/path_tracer.h"
 #include "scene/build.h"
@@ -34,7 +34,7 @@ class TestScene {
     static TestScene parse(std::string text, const BuildOptions& options = {}) {
         TestScene scene;
         const FileId file = scene.parts_->sources.add("test.scene", std::move(text));
-        scene.build(file, ABBE_SOURCE_DIR, options);
+        scene.build(file, std::filesystem::path(ABBE_SOURCE_DIR) / "test.scene", options);
         return scene;
     }
     // A file relative to the source tree, with the library of materials; `definitions` as `-D` of the command line
@@ -45,11 +45,10 @@ class TestScene {
         const auto full = std::filesystem::path(ABBE_SOURCE_DIR) / path;
         Parts& p = *scene.parts_;
         addPresets(p.types, p.sources, p.diagnostics);
-        ParseOptions parsing;
+        LayerOptions layers;
         for (const std::string& text : definitions)
-            if (const auto found = readOverride(p.sources, text, p.diagnostics)) parsing.overrides.push_back(*found);
-        if (const auto file = readSceneFile(p.sources, full, p.diagnostics))
-            scene.build(*file, full.parent_path(), options, parsing);
+            if (const auto found = readOverride(p.sources, text, p.diagnostics)) layers.defines.push_back(*found);
+        if (const auto file = readSceneFile(p.sources, full, p.diagnostics)) scene.build(*file, full, options, layers);
         return scene;
     }
 
@@ -86,11 +85,11 @@ class TestScene {
         BuiltScene built;
     };
 
-    void build(FileId file, const std::filesystem::path& folder, const BuildOptions& options,
-               const ParseOptions& parsing = {}) {
+    void build(FileId file, const std::filesystem::path& path, const BuildOptions& options,
+               const LayerOptions& layers = {}) {
         Parts& p = *parts_;
-        const auto document = abbe::parse(p.sources, file, parsing, p.diagnostics);
-        p.tree = schema::resolve(document, p.types, folder, p.diagnostics);
+        const auto files = readLayerFiles(p.sources, file, path, layers, p.diagnostics);
+        p.tree = schema::resolve(files, p.types, p.diagnostics);
         p.built = buildScene(p.tree, p.types, options, p.diagnostics);
     }
 

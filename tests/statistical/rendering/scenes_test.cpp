@@ -15,7 +15,9 @@ std::vector<fs::path> shippedScenes() {
     const fs::path root = ABBE_SOURCE_DIR;
     std::vector<fs::path> found;
     for (const auto& entry : fs::recursive_directory_iterator(root / "scenes"))
-        if (entry.path().extension() == ".scene") found.push_back(entry.path().lexically_relative(root));
+        if (entry.path().extension() == ".scene" &&
+            entry.path().parent_path().filename() != "props") // which are included
+            found.push_back(entry.path().lexically_relative(root));
     std::sort(found.begin(), found.end());
     return found;
 }

@@ -136,7 +136,9 @@ class StandIns {
         std::string written = name;
         if (const std::size_t tile = written.find("<UDIM>"); tile != std::string::npos)
             written.replace(tile, 6, "1001");
-        const fs::path model = kSource / "tests/snippets" / ("any" + fs::path(written).extension().string());
+        const fs::path own = kSource / "tests/snippets" / fs::path(written).filename();
+        const fs::path model =
+            fs::exists(own) ? own : kSource / "tests/snippets" / ("any" + fs::path(written).extension().string());
         if (!fs::exists(model) || fs::exists(folder / written)) return false;
         fs::create_directories((folder / written).parent_path());
         fs::copy_file(model, folder / written);

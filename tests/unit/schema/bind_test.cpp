@@ -1,4 +1,5 @@
 #include "schema/binding.h"
+#include "schema/expression.h"
 #include "schema/measure.h"
 #include "schema/scene_tree.h"
 
@@ -25,24 +26,23 @@ TEST_CASE("default texts become values") {
     CHECK((*documentOf("a", "")->roots().begin()).valueCount() == 0);
 }
 
-TEST_CASE("fractions") {
-    CHECK(parseFraction("1/48") == 1. / 48);
-    CHECK(parseFraction("1.5/3") == 0.5);
-    CHECK(std::isinf(parseFraction("1/0").value()));
-    CHECK(!parseFraction("1/"));
-    CHECK(!parseFraction("/2"));
-    CHECK(!parseFraction("1/2/3"));
-    CHECK(!parseFraction("1 / 2"));
-    CHECK(!parseFraction("hero/body.obj"));
-    CHECK(!parseFraction("12"));
-    const auto measured = parseMeasuredFraction("1/24 s");
-    REQUIRE(measured);
-    CHECK(measured->value == 1. / 24);
-    CHECK(measured->unit == "s");
-    CHECK(!parseMeasuredFraction("1/24"));
-    CHECK(!parseMeasuredFraction("1/24 "));
-    CHECK(!parseMeasuredFraction("2 s"));
-    CHECK(!parseMeasuredFraction("1 / 24 s"));
+TEST_CASE("texts that are meant to be computed") {
+    const auto computed = [](std::string_view text) {
+        Value value;
+        value.kind = ValueKind::string;
+        value.text = text;
+        return isComputed(value);
+    };
+    for (const char* text :
+         {"1/48", "1/48 s", "12", " 2 cm", "-2", "- (2)", "$r", "(1 + 2)", "sin(30 deg)", "pi", "pi / 2", "min (1, 2)"})
+        CHECK(computed(text));
+    for (const char* text :
+         {"", " ", "hero/body.obj", "wood.png", "m", "pigment", "pi.exr", "sine", "sin", "#ff0000", "-", "=2"})
+        CHECK(!computed(text));
+    Value word;
+    word.kind = ValueKind::word;
+    word.text = "pi";
+    CHECK(!isComputed(word)); // a name
 }
 
 TEST_CASE("ranges read well") {
