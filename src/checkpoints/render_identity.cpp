@@ -4,6 +4,7 @@
 #include "math/byte_hash.h"
 #include "packs/scene_files.h"
 #include "rendering/render_params.h"
+#include "schema/layers.h"
 
 #include <algorithm>
 #include <charconv>
@@ -54,7 +55,7 @@ std::string contentsOf(const SceneFile& file) {
 // Writes the scene down as facts, a fact for each property of what stands at the top.
 class SceneFactWriter {
   public:
-    SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts) : facts_(facts) {
+    SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts) : tree_(loaded.tree), facts_(facts) {
         std::map<std::filesystem::path, std::string> known; // each is read once
         for (const SceneFile& file : filesOf(loaded.tree)) {
             const auto [contents, fresh] = known.try_emplace(file.named.path);
@@ -64,28 +65,53 @@ class SceneFactWriter {
     }
 
     // Of the settings alone.
-    void writeSettings(const schema::Document& document) {
-        for (const Node node : document.roots())
+    void writeSettings() {
+        for (const Node& node : tree_.statements)
             if (isSettings(node)) root(node);
     }
 
-    void write(const schema::Document& document) {
+    // What is in force, in its order: files that are included, what layers change, and the parameters that texts
+    // compute with.
+    void write() {
         // A scene of very many things is told thing by thing, not property by property.
-        byProperty_ = document.nodes.size() <= 100000;
-        for (const Node node : document.roots())
+        std::size_t nodes = tree_.document->nodes.size();
+        for (const auto& [file, insert] : tree_.inserts)
+            if (insert.written) nodes += insert.document->nodes.size();
+        byProperty_ = nodes <= 100000;
+        for (const Node& node : tree_.statements)
             if (!isSettings(node)) root(node);
+        parameters(*tree_.document, "");
+        for (const auto& [file, insert] : tree_.inserts)
+            if (insert.written) parameters(*insert.document, insert.prefix);
     }
 
   private:
-    static bool isSettings(const Node& node) { return node.name() == "film" || node.name() == "render"; }
+    static bool isSettings(const Node& node) {
+        const bool override = node.name() == "override" && node.valueCount() > 0 && node.value(0).isText();
+        const std::string_view kind = override ? node.value(0).text : node.name();
+        return kind == "film" || kind == "render";
+    }
+
+    // Where `$name` stands by itself its value is in its place already.
+    void parameters(const schema::Document& document, const std::string& prefix) {
+        for (const schema::Document::Parameter& p : document.parameters) {
+            if (!p.inText) continue;
+            std::string value;
+            for (const Value& v : p.values()) append(v, value);
+            add(unique(fmt::format("param {}{}", prefix, p.name)), value);
+        }
+    }
 
     void root(const Node& node) {
-        std::string name(node.name());
+        std::string name = tree_.fullName(node.nameSpan(), "") + std::string(node.name());
         std::string rest;
         for (std::size_t i = 0; i < node.valueCount(); ++i) append(node.value(i), rest);
         for (const schema::Key& key : node.keys()) append(key, rest);
-        // The first word is its name or its type; those alike are counted.
-        if (node.valueCount() > 0 && node.value(0).isText()) name += " " + std::string(node.value(0).text);
+        // The first word is its name or its type, or the kind that a layer changes before its name; those alike are
+        // counted.
+        const std::size_t words = schema::isLayerWord(node.name()) ? 2 : 1;
+        for (std::size_t i = 0; i < std::min(words, node.valueCount()) && node.value(i).isText(); ++i)
+            name += " " + std::string(node.value(i).text);
         name = unique(name);
         if (!byProperty_) {
             block(node, rest);
@@ -160,6 +186,7 @@ class SceneFactWriter {
         out += text;
     }
 
+    const schema::SceneTree& tree_;
     std::vector<Fact>& facts_;
     bool byProperty_ = true;
     std::map<std::string, int> counts_;
@@ -198,13 +225,13 @@ std::vector<Fact> renderIdentity(const IdentityInput& in) {
     // Strata are as many as a replicate has samples: with more of them, all samples are others.
     if (s.technique.numbers == Technique::Numbers::stratified)
         facts.push_back({"strata", number(s.samplesPerReplicate(in.replicates))});
-    if (in.loaded->tree.document) SceneFactWriter(*in.loaded, facts).write(*in.loaded->tree.document);
+    if (in.loaded->tree.document) SceneFactWriter(*in.loaded, facts).write();
     return facts;
 }
 
 std::vector<Fact> settingFacts(const LoadedScene& loaded) {
     std::vector<Fact> facts;
-    if (loaded.tree.document) SceneFactWriter(loaded, facts).writeSettings(*loaded.tree.document);
+    if (loaded.tree.document) SceneFactWriter(loaded, facts).writeSettings();
     return facts;
 }
 

@@ -18,6 +18,12 @@ void addDefines(Arguments& a, std::vector<std::string>& defines, const char* hel
     a.value("-D", "NAME=VALUE", &defines, help);
 }
 
+void addLayers(Arguments& a, LayerChoice& layers) {
+    a.value("--variant", "NAME", &layers.variants, "Choose a variant of the scene; may be repeated");
+    a.value("--set", "PROPERTY=VALUE", &layers.sets,
+            "Set a property: material.skin.roughness=0.3, camera.lens=50; may be repeated");
+}
+
 void addView(Arguments& a, ViewOptions& view) {
     a.value("--display", "NAME", &view.display, "OCIO display of the PNG");
     a.value("--view", "NAME", &view.view, "OCIO view of the PNG");

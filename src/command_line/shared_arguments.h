@@ -1,6 +1,7 @@
 // Flags that several commands have.
 #pragma once
 
+#include "app/load.h"
 #include "command_line/arguments.h"
 #include "pictures/display_view.h"
 #include "pictures/image_output.h"
@@ -17,6 +18,8 @@ void addJson(Arguments&, const char* help = "JSON on stdout");
 void addThreads(Arguments&);
 void addDefines(Arguments&, std::vector<std::string>& defines,
                 const char* help = "Set a parameter of the scene; may be repeated");
+// `--variant` and `--set`, of commands that take a scene.
+void addLayers(Arguments&, LayerChoice&);
 // `--display`, `--view`, `--ocio`, `--exposure`.
 void addView(Arguments&, ViewOptions&);
 // `--png`; a view asks for a PNG, too.

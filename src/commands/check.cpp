@@ -49,6 +49,7 @@ void addArguments(Arguments& a, CheckOptions& o) {
     a.flag(
         "--json", [&format] { format = MessageFormat::json; }, "The same as --format=json");
     addDefines(a, o.defines);
+    addLayers(a, o.layers);
     addMoment(a, o.frame);
     a.afterwards([&o] { return contradiction(o); });
 }
@@ -81,8 +82,9 @@ std::size_t fixScene(const SceneInput& input) {
 }
 
 SceneInput checkedInput(const std::string& path, const CheckOptions& options) {
-    if (path != kStandardInput) return {path, options.defines, false, options.frame};
-    return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true, options.frame};
+    if (path != kStandardInput) return {path, options.defines, false, options.frame, options.layers};
+    return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true, options.frame,
+            options.layers};
 }
 
 ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {

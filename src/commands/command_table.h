@@ -77,6 +77,7 @@ struct CheckOptions {
     std::vector<std::string> paths; // "-": standard input
     std::string standsFor;          // the file that standard input is the text of
     std::vector<std::string> defines;
+    LayerChoice layers;
     std::optional<int> frame;
     bool fix = false;
     bool strict = false;
@@ -124,6 +125,7 @@ struct ExportOptions {
     std::string output; // empty: named after the scene, in the current folder
     bool force = false; // replaces a file that is there
     std::vector<std::string> defines;
+    LayerChoice layers;
 
     static bool makesFiles() { return true; }
 };
@@ -137,6 +139,7 @@ struct PackOptions {
     std::string path;
     std::string output; // a pack, or a folder with a slash at its end
     std::vector<std::string> defines;
+    LayerChoice layers;
 
     static bool makesFiles() { return true; }
 };
@@ -151,6 +154,7 @@ struct ExplainOptions {
     bool effects = false; // of the scene; without a topic: those that there are
     BuildOptions build;   // camera, size, seed and pilot of the render that is explained
     std::vector<std::string> defines;
+    LayerChoice layers;
     std::optional<int> frame;
 };
 
@@ -162,6 +166,7 @@ ExitCode run(const ExplainOptions&, const CommonOptions&);
 struct InfoOptions {
     std::string path;
     std::vector<std::string> defines;
+    LayerChoice layers;
     std::optional<int> frame;
 };
 

@@ -42,6 +42,7 @@ void addArguments(Arguments& a, ExplainOptions& o) {
     a.flag("--effects", &o.effects, "What a scene needs simulated; without one: all effects");
     addFrame(a, o.build);
     addDefines(a, o.defines);
+    addLayers(a, o.layers);
     addMoment(a, o.frame);
     addJson(a);
 }
@@ -170,7 +171,7 @@ CausticFindings causticsOf(const LoadedScene& loaded, const BuiltScene& describe
 }
 
 ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common) {
-    const auto loaded = loadScene({options.topic, options.defines, false, options.frame});
+    const auto loaded = loadScene({options.topic, options.defines, false, options.frame, options.layers});
     BuildOptions build = options.build;
     build.geometry = false;
     BuiltScene built;

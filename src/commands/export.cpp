@@ -27,6 +27,7 @@ void addArguments(Arguments& a, ExportOptions& o) {
     a.value("-o,--output", "FILE", &o.output, "File to write; else named after the scene");
     a.flag("--force", &o.force, "Replace a file that is there");
     addDefines(a, o.defines);
+    addLayers(a, o.layers);
     addJson(a);
 }
 
@@ -70,7 +71,7 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
         common.console.error(fmt::format("`{}` is there already; `--force` replaces it, `-o` names another", target));
         return ExitCode::usage;
     }
-    const auto loaded = loadScene({options.path, options.defines});
+    const auto loaded = loadScene({options.path, options.defines, false, {}, options.layers});
     const ExitCode checked = checkScene(*loaded);
     if (checked != ExitCode::done) {
         common.console.report(loaded->diagnostics, loaded->sources);

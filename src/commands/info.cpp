@@ -32,6 +32,7 @@ Examples:
 void addArguments(Arguments& a, InfoOptions& o) {
     a.argument("file", &o.path, "Scene (.scene) or image (.exr)").require();
     addDefines(a, o.defines);
+    addLayers(a, o.layers);
     addMoment(a, o.frame);
     addJson(a);
 }
@@ -168,6 +169,10 @@ std::string sceneJson(const SceneInfo& info) {
                                 {"samples", info.built.render.samples},
                                 {"effects", effectNames(info.built.scene.effects)},
                                 {"files", std::move(files)}});
+    Json variants = Json::list();
+    for (const schema::VariantName& variant : info.loaded.tree.variants)
+        variants.push(Json::object({{"name", variant.name}, {"chosen", variant.chosen}}));
+    object.set("variants", std::move(variants));
     object.set("shape_list", shapesJson(f.shapeList));
     if (!f.bounds.empty()) object.set("bounds_m", boundsJson(f.bounds));
     if (info.gltf) object.set("gltf", contentsJson(*info.gltf));
@@ -190,13 +195,15 @@ std::string sceneText(const SceneInfo& info) {
     s += fmt::format("film       {}×{}, {} samples per pixel\n", static_cast<int>(info.built.film.size.x),
                      static_cast<int>(info.built.film.size.y), info.built.render.samples);
     s += fmt::format("effects    {}\n", effectNames(info.built.scene.effects));
+    for (const schema::VariantName& variant : info.loaded.tree.variants)
+        s += fmt::format("variant    {}{}\n", variant.name, variant.chosen ? "  (chosen)" : "");
     if (info.gltf) s += contentsText(*info.gltf);
     for (const std::string& file : f.files) s += fmt::format("file       {}\n", file);
     return s + fmt::format("hash       {}\n", info.hash);
 }
 
 ExitCode sceneInfo(const InfoOptions& options, const CommonOptions& common) {
-    const SceneInput input{options.path, options.defines, false, options.frame};
+    const SceneInput input{options.path, options.defines, false, options.frame, options.layers};
     const auto loaded = loadScene(input);
     BuildOptions build;
     build.geometry = false;

@@ -23,6 +23,7 @@ void addArguments(Arguments& a, PackOptions& o) {
     a.argument("scene", &o.path, "Scene file").require();
     a.value("-o,--output", "FILE", &o.output, "Pack to write (.abz), or a new folder: shot/").require();
     addDefines(a, o.defines);
+    addLayers(a, o.layers);
     addJson(a);
 }
 
@@ -51,7 +52,7 @@ std::string resultText(const PackOptions& options, const ScenePack& pack, std::u
 } // namespace
 
 ExitCode run(const PackOptions& options, const CommonOptions& common) {
-    const auto loaded = loadScene({options.path, options.defines});
+    const auto loaded = loadScene({options.path, options.defines, false, {}, options.layers});
     const bool sound = isSound(*loaded);
     common.console.report(loaded->diagnostics, loaded->sources);
     if (!sound) return loaded->exitCode();

@@ -126,6 +126,7 @@ void addArguments(Arguments& a, RenderOptions& o) {
     addGoals(a, o);
     addPieces(a, o);
     addDefines(a, o.input.defines);
+    addLayers(a, o.input.layers);
     addThreads(a);
     addPng(a, o.png, o.view);
     addView(a, o.view);

@@ -32,6 +32,7 @@ void addArguments(Arguments& a, ReplayOptions& o) {
     a.read("--pilot", "N", b.pilot, "0 to 4, or with guiding up to 34", readPilot,
            "Size of its pilots, `abbe.pilot` of the image's header; else by the work");
     addDefines(a, o.render.input.defines, "A parameter of the scene; may be repeated");
+    addLayers(a, o.render.input.layers);
     addMoment(a, o.render.input.frame);
     addTechniques(a, b, "How light was found", "Where random numbers came from", "");
     addThreads(a);

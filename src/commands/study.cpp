@@ -133,6 +133,7 @@ void addArguments(Arguments& a, StudyOptions& o) {
     addJson(a, "Progress as JSON lines on stdout");
     a.flag("--quiet,-q", &o.quiet, "Say nothing but warnings and errors");
     addDefines(a, o.input.defines);
+    addLayers(a, o.input.layers);
     addMoment(a, o.input.frame);
     readVariants("all", o);
 }

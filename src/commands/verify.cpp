@@ -55,6 +55,7 @@ void addArguments(Arguments& a, VerifyOptions& o) {
     addJson(a, "JSON lines on stdout");
     a.flag("--quiet,-q", &o.quiet, "Say nothing but the result");
     addDefines(a, o.input.defines);
+    addLayers(a, o.input.layers);
     addMoment(a, o.input.frame);
 }
 

@@ -207,29 +207,96 @@ Span spanOfAll(const std::vector<schema::Value>& values) {
 
 } // namespace
 
+namespace {
+
+// Changes the texts of a scene's files so that they name what is in a pack.
+class TextEditor {
+  public:
+    TextEditor(const schema::SceneTree& tree, const SourceMap& sources, const std::string& sceneName)
+        : tree_(tree), sources_(sources), own_(tree.document->file), names_(tree.directory, sceneName) {
+        for (const schema::NamedFile& include : tree.includes) add({include, {{{}, include.path}}});
+        for (const auto& [file, insert] : tree.inserts)
+            if (insert.written && !insert.source.empty())
+                folders_[file] = fs::path(names_.add(fileAt(insert.source))).parent_path();
+        for (const SceneFile& file : filesOf(tree)) add(file);
+        for (const auto& [file, name] : named_) edit(file, name);
+        parameters();
+    }
+
+    std::string sceneText() { return edited(sources_.text(own_), edits_[own_]) + choices(); }
+
+    // With texts in the place of included files that were changed. A file that is included twice is the same each time.
+    std::vector<ScenePack::File> files() {
+        std::map<std::string, std::string> texts; // by names in the pack
+        for (const auto& [file, insert] : tree_.inserts)
+            if (insert.written && !insert.source.empty() && !edits_[file].empty())
+                texts.try_emplace(names_.add(fileAt(insert.source)), edited(sources_.text(file), edits_[file]));
+        std::vector<ScenePack::File> files = names_.files();
+        for (ScenePack::File& file : files)
+            if (const auto text = texts.find(file.name); text != texts.end()) file.text = text->second;
+        return files;
+    }
+
+  private:
+    static SceneFile fileAt(const fs::path& path) { return {{{}, {}, path}, {{{}, path}}}; }
+
+    void add(const SceneFile& file) { named_.emplace_back(file.named, names_.add(file)); }
+
+    // A name counts from the folder of the file that it stands in.
+    void edit(const schema::NamedFile& named, const std::string& name) {
+        const auto folder = folders_.find(named.span.file);
+        const bool below = folder != folders_.end() && !folder->second.empty();
+        const std::string relative = below ? fs::path(name).lexically_relative(folder->second).generic_string() : name;
+        if (relative != named.written)
+            edits_[named.span.file].push_back({named.span.begin, named.span.end, quotedForScene(relative)});
+    }
+
+    void parameters() {
+        for (const schema::Document::Parameter& parameter : tree_.document->parameters) {
+            if (parameter.given.empty() || parameter.written.empty()) continue;
+            const Span written = spanOfAll(parameter.written);
+            // What the written value named is not read.
+            std::erase_if(edits_[own_],
+                          [&](const Edit& e) { return e.begin >= written.begin && e.end <= written.end; });
+            const std::vector<Edit>& files = edits_[parameter.given.front().span.file];
+            edits_[own_].push_back({written.begin, written.end, givenText(parameter.given, sources_, files)});
+        }
+    }
+
+    // What the command line chose, as statements at the end of the scene. What it set is a variant, since that is
+    // applied after those that are chosen before.
+    std::string choices() {
+        constexpr const char* kSet = "command-line";
+        std::string text, sets;
+        for (const auto& [name, values] : tree_.given)
+            text += fmt::format("param {} {}\n", quotedForScene(name),
+                                givenText(values, sources_, edits_[values.front().span.file]));
+        for (const auto& [file, insert] : tree_.inserts)
+            if (insert.written && insert.source.empty())
+                sets += "    " + edited(sources_.text(file), edits_[file]) + "\n";
+        for (const std::string& variant : tree_.chosen) text += fmt::format("variant {}\n", quotedForScene(variant));
+        if (!sets.empty()) text += fmt::format("variant {0} {{\n{1}}}\nvariant {0}\n", kSet, sets);
+        return text.empty() ? text : "\n\n// Chosen on the command line of abbe pack.\n" + text;
+    }
+
+    const schema::SceneTree& tree_;
+    const SourceMap& sources_;
+    FileId own_;
+    FileNames names_;
+    std::map<FileId, fs::path> folders_; // of included files, in the pack
+    std::vector<std::pair<schema::NamedFile, std::string>> named_;
+    std::map<FileId, std::vector<Edit>> edits_; // of the scene, of included files, and of the values of `-D`
+};
+
+} // namespace
+
 ScenePack packScene(const schema::SceneTree& tree, const SourceMap& sources) {
-    const schema::Document& document = *tree.document;
     ScenePack pack;
-    pack.sceneName = cleanName(fs::path(sources.path(document.file)).filename().string());
+    pack.sceneName = cleanName(fs::path(sources.path(tree.document->file)).filename().string());
     if (folded(pack.sceneName) == kManifestName) pack.sceneName = "scene-" + pack.sceneName;
-    FileNames names(tree.directory, pack.sceneName);
-    std::map<FileId, std::vector<Edit>> edits; // of the scene, and of the values of `-D`
-    for (const SceneFile& file : filesOf(tree)) {
-        const std::string name = names.add(file);
-        if (name != file.named.written)
-            edits[file.named.span.file].push_back({file.named.span.begin, file.named.span.end, quotedForScene(name)});
-    }
-    for (const schema::Document::Parameter& parameter : document.parameters) {
-        if (parameter.given.empty() || parameter.written.empty()) continue;
-        const Span written = spanOfAll(parameter.written);
-        // What the written value named is not read.
-        std::erase_if(edits[document.file],
-                      [&](const Edit& e) { return e.begin >= written.begin && e.end <= written.end; });
-        const std::vector<Edit>& files = edits[parameter.given.front().span.file];
-        edits[document.file].push_back({written.begin, written.end, givenText(parameter.given, sources, files)});
-    }
-    pack.sceneText = edited(sources.text(document.file), edits[document.file]);
-    pack.files = names.files();
+    TextEditor editor(tree, sources, pack.sceneName);
+    pack.sceneText = editor.sceneText();
+    pack.files = editor.files();
     return pack;
 }
 

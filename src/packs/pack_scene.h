@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct ScenePack {
     struct File {
         std::string name; // in the pack
         std::filesystem::path path;
+        std::optional<std::string> text = {}; // in place of what the file holds: a scene that names its files anew
     };
     std::string sceneName;
     std::string sceneText;   // names what is in the pack, with the parameters that it was loaded with
@@ -31,7 +33,8 @@ struct UnpackableFile : std::runtime_error {
 
 // What is below the scene's folder keeps its name, and what is elsewhere gets one below `files/`. A name that is taken
 // becomes one below `files/2/`, and so on. Files of a glTF file stay where they are from there. The scene's text is
-// changed where it names a file by another name, and where `-D` gave a parameter a value; comments stay.
+// changed where it names a file by another name, and where `-D` gave a parameter a value; so are those of files that it
+// includes. What `--variant` and `--set` chose is written at its end. Comments stay.
 // Requires a scene that was built without errors. Throws UnpackableFile.
 ScenePack packScene(const schema::SceneTree&, const SourceMap&);
 

@@ -44,6 +44,11 @@ std::vector<ZipSource> sourcesOf(const ScenePack& pack, const std::string& progr
     for (const ScenePack::File& file : pack.files) {
         ZipSource source{file.name, {}, file.path.string(), 0, {}, isText(file.name)};
         Sha256 content;
+        if (file.text) {
+            content.add(*file.text);
+            sources.push_back({file.name, *file.text, {}, file.text->size(), content.digits(), isText(file.name)});
+            continue;
+        }
         readPortions(source.path, [&](std::span<const char> bytes) {
             content.add(bytes);
             source.bytes += bytes.size();

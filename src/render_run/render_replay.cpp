@@ -16,6 +16,8 @@ std::string RenderRun::replayCommand() const {
         command += fmt::format(" {} {}", flag, shellQuoted(value));
     };
     for (const std::string& define : options_.input.defines) add("-D", define);
+    for (const std::string& variant : options_.input.layers.variants) add("--variant", variant);
+    for (const std::string& set : options_.input.layers.sets) add("--set", set);
     if (options_.input.frame) command += fmt::format(" --frame {}", *options_.input.frame);
     if (!b.camera.empty()) add("--camera", b.camera);
     if (b.size) add("--size", fmt::format("{}x{}", b.size->x, b.size->y));

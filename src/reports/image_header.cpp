@@ -33,9 +33,30 @@ std::string sceneHash(const LoadedScene& loaded, const SceneInput& input) {
     std::vector<std::string> defines = input.defines;
     std::sort(defines.begin(), defines.end());
     for (const std::string& define : defines) hash.addField(define);
+    for (const auto& [file, insert] : loaded.tree.inserts)
+        if (insert.written && !insert.source.empty()) {
+            hash.addField("include " + insert.prefix);
+            hash.addField(loaded.sources.text(file));
+        }
+    for (const std::string& variant : input.layers.variants) hash.addField("variant " + variant);
+    for (const std::string& set : input.layers.sets) hash.addField("set " + set);
     if (input.frame) hash.addField(fmt::format("frame {}", *input.frame));
     return hash.digits();
 }
+
+namespace {
+
+// What of the layers was chosen.
+void addLayerChoice(const ProvenanceInput& p, std::vector<ImageAttribute>& list) {
+    std::string variants, sets;
+    for (const schema::VariantName& variant : p.loaded->tree.variants)
+        if (variant.chosen) variants += (variants.empty() ? "" : " ") + variant.name;
+    for (const std::string& set : p.input->layers.sets) sets += (sets.empty() ? "" : "\n") + set;
+    if (!variants.empty()) list.push_back({"abbe.variants", std::move(variants)});
+    if (!sets.empty()) list.push_back({"abbe.set", std::move(sets)});
+}
+
+} // namespace
 
 std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     const RenderSettings& settings = *p.settings;
@@ -48,6 +69,7 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     whole("abbe.edition", kLanguageEdition);
     text("abbe.scene", p.input->path);
     text("abbe.sceneHash", sceneHash(*p.loaded, *p.input));
+    addLayerChoice(p, list);
     text("abbe.command", p.commandLine);
     if (p.input->frame) {
         list.push_back({"abbe.frame", *p.input->frame});
