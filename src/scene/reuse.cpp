@@ -3,6 +3,7 @@
 #include "base/enclosure.h"
 #include "base/file.h"
 #include "io/gltf.h"
+#include "schema/expression.h"
 #include "textures/texture_store.h"
 
 #include <algorithm>
@@ -36,13 +37,13 @@ class MeaningReader {
         span(d.span), span(d.nameSpan);
         writer_.number(static_cast<int>(d.kind));
         writer_.text(d.type ? d.type->name : std::string_view());
-        header(d);
+        header(d.span);
         writer_.number(d.arguments.size());
         for (const Value& v : d.arguments) value(v);
         keys(d.keys);
         for (const Node& property : d.properties)
             if (std::ranges::find(without_, property.name()) == without_.end())
-                node(property);
+                header(property.nameSpan()), node(property);
             else
                 groups(property);
     }
@@ -52,9 +53,9 @@ class MeaningReader {
   private:
     void span(Span s) { spans_.push_back(s); }
 
-    // Bare lengths, colours and axes mean what the header says.
-    void header(const Definition& d) {
-        const schema::Header& h = tree_.headerOf(d.span);
+    // Bare lengths, colours and axes mean what the header of the file says in which they stand: a layer's, perhaps.
+    void header(Span at) {
+        const schema::Header& h = tree_.headerOf(at);
         writer_.number(h.length);
         writer_.number(static_cast<int>(h.rgb));
         writer_.number(h.zUp), writer_.number(tree_.header.zUp);
@@ -101,10 +102,23 @@ class MeaningReader {
         if (v.kind == schema::ValueKind::boolean) return writer_.number(v.boolean);
         writer_.text(v.text);
         if (!v.isText() || v.text.empty()) return;
+        if (v.text.find('$') != v.text.npos) parameters(v.span.file);
         if (v.kind == schema::ValueKind::string || v.text.find('.') != v.text.npos) file(v);
         for (const Kind kind : {Kind::texture, Kind::spectrum})
-            if (const Definition* named = tree_.find(kind, v.text); named && seen_.insert(named).second)
-                definition(*named);
+            for (const Span at : {v.span, v.use})
+                if (const Definition* named = tree_.find(kind, v.text, at); named && seen_.insert(named).second)
+                    definition(*named);
+    }
+
+    // What a text computes depends on the parameters of its file, each of which may be made of others: all of them.
+    void parameters(FileId file) {
+        if (!tree_.header.parameters || !asked_.insert(file).second) return;
+        const auto* const all = tree_.header.parameters->of(file);
+        if (!all) return;
+        for (const schema::Document::Parameter& p : *all) {
+            writer_.text(p.name);
+            for (const Value& v : p.values()) value(v);
+        }
     }
 
     // What was made for a model that the scene takes with its materials is made anew whenever the scene is read.
@@ -147,6 +161,7 @@ class MeaningReader {
     DigestWriter writer_;
     std::vector<Span> spans_;
     std::set<const Definition*> seen_; // named ones that are part of it already
+    std::set<FileId> asked_;           // whose parameters are
 };
 
 } // namespace
