@@ -161,6 +161,15 @@ bool isIncluded(const SceneTree& tree, const Definition& d) {
     return found != tree.inserts.end() && found->second.written;
 }
 
+// `left:paint`, which a file that is included `as=left` calls `paint`.
+bool isUsedInside(const SceneTree& tree, const Definition& d, const Texts& uses) {
+    return d.name.find(':') != std::string::npos && std::ranges::any_of(tree.inserts, [&](const auto& entry) {
+               const std::string& prefix = entry.second.prefix;
+               return !prefix.empty() && d.name.starts_with(prefix) &&
+                      uses.contains(std::string_view(d.name).substr(prefix.size()));
+           });
+}
+
 // `unchosen`: what variants hold that are not part of the scene, but may be.
 void checkUnused(const SceneTree& tree, const std::vector<const Definition*>& instances,
                  const std::vector<Node>& unchosen, Diagnostics& diagnostics) {
@@ -176,7 +185,7 @@ void checkUnused(const SceneTree& tree, const std::vector<const Definition*>& in
         const bool slot = d->kind == Kind::material || d->kind == Kind::spectrum || d->kind == Kind::texture;
         if ((!slot && d->kind != Kind::object) || isIncluded(tree, *d)) continue;
         const Texts& uses = slot ? texts : targets;
-        if (uses.contains(d->name) || mayBeMisspelt(d->name, uses, budget)) continue;
+        if (uses.contains(d->name) || isUsedInside(tree, *d, uses) || mayBeMisspelt(d->name, uses, budget)) continue;
         diagnostics.warning("W0201", d->nameSpan, fmt::format("{} `{}` is never used", keyword(d->kind), d->name),
                             "unused");
     }

@@ -89,6 +89,8 @@ TEST_CASE("as= is a prefix of all names of a file") {
     CHECK(l->params["shape train:back:hull"].radius == 3);
     CHECK(l->tree.definitions[2].target == "train:front:body");
     CHECK(l->resolver.references.at(0) == "train:front:paint");
+    // What takes the place of a name inside is used there.
+    sound(*files.shot("include \"car.scene\" as=a\nremove material a:paint\nmaterial a:paint dielectric { ior 1.5 }"));
     // Names of the includer are not seen from inside.
     files.write("open.scene", "scene 1\nshape s sphere { material outer }");
     CHECK(files.shot("include \"open.scene\" as=a\nmaterial outer diffuse { reflectance 1 }")->codes().find("E0202") !=
