@@ -241,6 +241,7 @@ void LiveRender::load() {
     {
         const std::lock_guard lock(mutex_);
         report_.status = LiveStatus::loading;
+        report_.firstPixels = 0;
         ++report_.saves;
     }
     changed_();
