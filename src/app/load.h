@@ -20,6 +20,8 @@ namespace abbe {
 struct LayerChoice {
     std::vector<std::string> variants; // names
     std::vector<std::string> sets;     // "kind.name.property=value"
+
+    bool operator==(const LayerChoice&) const = default;
 };
 
 // The scene of a command line.

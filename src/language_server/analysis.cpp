@@ -1,9 +1,10 @@
 #include "language_server/analysis.h"
 
-#include "parser/parse.h"
+#include "parser/layer_files.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
 #include "schema/definition_reader.h"
+#include "schema/layers.h"
 #include "schema/preset_library.h"
 #include "spectrum/named_spectra.h"
 
@@ -25,9 +26,12 @@ Language::Language() : types(makeTypeTable()) {
 
 Analysis::Analysis(const Language& language, const std::filesystem::path& path, std::string text)
     : language_(language), file_(sources_.add(path.string(), std::move(text))) {
-    document_ = parse(sources_, file_, {}, diagnostics_);
-    syntaxErrors_ = diagnostics_.hasErrors();
-    tree_ = schema::resolve(document_, language_.types, path.parent_path(), diagnostics_);
+    const schema::LayerFiles files = readLayerFiles(sources_, file_, path, {}, diagnostics_);
+    document_ = files.files.front().document;
+    syntaxErrors_ = std::ranges::any_of(diagnostics_.all(), [&](const Diagnostic& d) {
+        return d.severity == Severity::error && d.code.starts_with("E01") && d.span.file == file_;
+    });
+    tree_ = schema::resolve(files, language_.types, diagnostics_);
 }
 
 const FieldInfo* Scope::find(std::string_view property) const {
@@ -148,11 +152,34 @@ Scope Analysis::inlineScope(Kind kind, const Node& node, std::size_t word) const
     return fieldsOf(kind, type, keyword(kind));
 }
 
+// An `override` holds properties of what it changes, a variant holds statements of a file.
+Scope Analysis::layerScope(const Node& node) const {
+    Scope scope = nothingIn(node.name());
+    if (node.name() == "variant") scope.place = Scope::Place::file;
+    if (node.name() != "override" || node.valueCount() == 0 || !node.value(0).isText()) return scope;
+    const auto kind = schema::findKind(node.value(0).text);
+    if (!kind) return scope;
+    const Value name = node.valueCount() > 1 ? node.value(1) : Value{};
+    const schema::Definition* changed = nullptr;
+    if (name.isText())
+        changed = tree_.find(*kind, name.text, name.span);
+    else if (const auto only = std::ranges::find(tree_.definitions, *kind, &schema::Definition::kind);
+             only != tree_.definitions.end())
+        changed = &*only;
+    if (isContainer(*kind)) {
+        scope.place = Scope::Place::container;
+        scope.kind = *kind;
+        scope.fields = placementFields(language_.types);
+        return scope;
+    }
+    return fieldsOf(*kind, changed ? changed->type : language_.types.defaultOf(*kind), node.name());
+}
+
 Scope Analysis::scopeOf(const Scope& outer, const Node& node) const {
     if (node.name().starts_with("x-")) return nothingIn(node.name());
     switch (outer.place) {
     case Scope::Place::file:
-        return definitionScope(node, language_);
+        return schema::isLayerWord(node.name()) ? layerScope(node) : definitionScope(node, language_);
     case Scope::Place::container:
         if (!outer.find(node.name())) return definitionScope(node, language_);
         break;

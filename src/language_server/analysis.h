@@ -74,7 +74,7 @@ struct Scope {
 // One version of a text. Not movable: all else refers to it.
 class Analysis {
   public:
-    // `path` names the text and says where its files are.
+    // `path` names the text and says where its files are; those that it includes are read from there.
     Analysis(const Language&, const std::filesystem::path& path, std::string text);
     Analysis(const Analysis&) = delete;
     Analysis& operator=(const Analysis&) = delete;
@@ -102,6 +102,8 @@ class Analysis {
     Scope inlineScope(schema::Kind, const schema::Node&, std::size_t word) const;
 
   private:
+    Scope layerScope(const schema::Node&) const;
+
     const Language& language_;
     SourceMap sources_;
     FileId file_;

@@ -111,7 +111,9 @@ class Completer {
         case Scope::Place::file:
             languageWord("scene", cursor_.neighbours.empty() ? 0 : 2);
             kinds(true);
-            return languageWord("param", 1);
+            for (const std::string_view word : {"param", "include", "override", "remove", "variant"})
+                languageWord(word, 1);
+            return;
         case Scope::Place::container:
             properties();
             return kinds(false);
@@ -201,6 +203,7 @@ class Completer {
 
     void head(const schema::Node& node) {
         if (node.name() == "scene") return header();
+        if (node.name() == "override" || node.name() == "remove") return changed();
         const auto kind = schema::findKind(node.name());
         if (!kind) return;
         if (*kind == Kind::instance || *kind == Kind::instances) return names(Kind::object);
@@ -218,6 +221,13 @@ class Completer {
         if (type)
             return inlined(*kind, types_.find(*kind, type->text), std::span(cursor_.before).subspan(behind), node);
         if (cursor_.before.size() < 2) types(*kind);
+    }
+
+    // What a layer changes: its kind, then its name.
+    void changed() {
+        if (cursor_.before.empty()) return kinds(true);
+        if (const auto kind = schema::findKind(cursor_.before[0].text); kind && cursor_.before.size() == 1)
+            names(*kind);
     }
 
     void header() {

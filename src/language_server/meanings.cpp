@@ -1,5 +1,6 @@
 #include "language_server/analysis.h"
 #include "schema/definition_reader.h"
+#include "schema/layers.h"
 #include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
 
@@ -126,7 +127,21 @@ class MeaningReader {
         }
     }
 
+    // `include "file"`, `override kind name { … }`, `remove kind name`, `variant name { … }`
+    void layer(const Node& node, const Scope& scope) {
+        add(node.nameSpan(), Sense::kind, node.name());
+        const Row row = rowOf(node);
+        if (const Value* const file = node.name() == "include" ? row.text() : nullptr) addValue(*file, Sense::file);
+        if (node.name() == "override" || node.name() == "remove")
+            if (const auto kind = row.text() ? schema::findKind(row.values[0].text) : std::nullopt) {
+                addValue(row.values[0], Sense::kind).kind = *kind;
+                if (row.values.size() > 1 && row.values[1].isText()) addReference(row.values[1], *kind, nullptr);
+            }
+        block(node, scope);
+    }
+
     void definition(const Node& node, const Scope& scope) {
+        if (scope.place == Scope::Place::file && schema::isLayerWord(node.name())) return layer(node, scope);
         const auto kind = schema::findKind(node.name());
         if (!kind) return;
         add(node.nameSpan(), Sense::kind, node.name()).kind = *kind;
