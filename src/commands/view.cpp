@@ -33,6 +33,7 @@ void addArguments(Arguments& a, ViewRequest& o) {
            "More samples where there is more noise, at the same cost");
     addMoment(a, o.input.frame);
     addDefines(a, o.input.defines);
+    addLayers(a, o.input.layers);
     addThreads(a);
     addView(a, o.view);
 }
