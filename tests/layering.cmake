@@ -72,7 +72,7 @@ set(folders base math spectrum tev denoise schema parser io volumes vdb render g
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "draco/=io" "meshoptimizer\\.h=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "httplib\\.h=view" "nlohmann/=app|farm|reports|io|packs|view|exchange/gltf_export" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
+    "CLI/=command_line" "httplib\\.h=view" "nlohmann/=app|language_server|farm|reports|io|packs|view|exchange/gltf_export" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
 
 set(faults 0)
 macro(fault text)
