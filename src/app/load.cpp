@@ -124,8 +124,8 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
 bool SceneLoader::isSame(const SceneInput& input) const {
     return last_ && last_->readable && !last_->pack && !last_->import && last_->tree.inserts.empty() &&
            !last_->asksForFrame() && !input.fromStandardInput && input.path == input_.path &&
-           input.defines == input_.defines && input.layers == input_.layers && input.frame.has_value() == input_.frame.has_value() &&
-           identityOf(input.path) == file_;
+           input.defines == input_.defines && input.layers == input_.layers &&
+           input.frame.has_value() == input_.frame.has_value() && identityOf(input.path) == file_;
 }
 
 std::shared_ptr<LoadedScene> SceneLoader::load(const SceneInput& input) {
