@@ -33,9 +33,9 @@ struct SceneInput {
     // This moment of an animation, and not the scene's own: the one place where a frame is chosen. The parameter
     // `frame` has its number, if the scene has that parameter, and the camera's time is frame / fps later.
     std::optional<int> frame = {};
+    LayerChoice layers = {};
     // The text, where an editor holds it; `path` is what it is called then, too.
     std::optional<std::string> text = {};
-    LayerChoice layers = {};
 };
 
 // A scene file that was read and resolved. Not movable: the tree refers to sources and types.
