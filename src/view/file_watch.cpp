@@ -101,13 +101,18 @@ void FileWatch::follow(const std::vector<fs::path>& files, Clock::time_point sin
     const std::int64_t begun =
         std::chrono::duration_cast<std::chrono::nanoseconds>((since - kStep).time_since_epoch()).count();
     const std::lock_guard lock(mutex_);
-    files_.clear();
+    const std::map<std::string, Mark> before = std::exchange(files_, {});
     folders_.clear();
     open_.clear();
     for (const std::string& name : names) {
         const Mark mark = markOf(name);
-        // Of what changed meanwhile nobody knows which content was read.
-        files_[name] = mark.changed > begun ? Mark{} : mark;
+        // What was followed is as it was when it was told last, or has changed since. Of what is new, and changed while
+        // it was read, nobody knows which content was read.
+        const auto known = before.find(name);
+        if (known != before.end())
+            files_[name] = known->second;
+        else
+            files_[name] = mark.changed > begun ? Mark{} : mark;
         folders_.insert(folderOf(name));
     }
     for (const fs::path& folder : alsoNew) {
