@@ -131,7 +131,10 @@ class MeaningReader {
     void layer(const Node& node, const Scope& scope) {
         add(node.nameSpan(), Sense::kind, node.name());
         const Row row = rowOf(node);
-        if (const Value* const file = node.name() == "include" ? row.text() : nullptr) addValue(*file, Sense::file);
+        if (const Value* const file = node.name() == "include" ? row.text() : nullptr) {
+            addValue(*file, Sense::file);
+            for (const Node parameter : node.children()) add(parameter.nameSpan(), Sense::kind, parameter.name());
+        }
         if (node.name() == "override" || node.name() == "remove")
             if (const auto kind = row.text() ? schema::findKind(row.values[0].text) : std::nullopt) {
                 addValue(row.values[0], Sense::kind).kind = *kind;

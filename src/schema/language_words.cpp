@@ -90,8 +90,8 @@ LanguageWord overrideWord() {
             "changes. The only camera, film or render needs no name; `--set kind.name.property=value` is the same from "
             "the command "
             "line.",
-            "material skin diffuse { reflectance 0.5 }; shape box { material skin }; override material skin { "
-            "roughness 0.3 }",
+            "material chalk diffuse { reflectance 0.5 }; shape box { material chalk }; "
+            "override material chalk { reflectance 0.8 }",
             {}};
 }
 

@@ -141,6 +141,7 @@ struct DenoisePlanes {
     PixelBounds bounds;
     std::array<std::vector<float>, 3> colour, half, albedo, normal;
     std::vector<float> depth;
+    Matrix3 toRec709;
 
     DenoiseInput input() const {
         DenoiseInput in;
@@ -152,6 +153,7 @@ struct DenoisePlanes {
             in.features.normal[c] = {normal[c], {}};
         }
         in.features.depth = {depth, {}};
+        in.toRec709 = toRec709;
         return in;
     }
 };
@@ -160,6 +162,7 @@ DenoisePlanes denoisePlanes(const RestingFilm& resting) {
     const PixelFilm& film = resting.film.film;
     DenoisePlanes planes;
     planes.bounds = film.bounds();
+    planes.toRec709 = rgb::rec709.fromXyz() * rgbSpace(resting.shot.film.space).toXyz();
     ResolvedImage image = resolveImage(film, resting.shot.film, resting.shot.built.exposure);
     const Matrix3 matrix = toSpace(resting.shot.film);
     const int end = (film.replicates() + 1) / 2;
@@ -411,7 +414,7 @@ ViewPictures::Picture ViewPictures::denoised(const Picture& live, DenoiseMethod 
         if (!planes) return live;
         DenoiseResult result;
         try {
-            result = denoise(planes->input(), method);
+            result = denoise(planes->input(), method, DenoiseEffort::look);
         } catch (const std::runtime_error& e) { // a denoiser that is not there, or failed
             throw ViewFault(e.what());
         }

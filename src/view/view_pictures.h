@@ -24,7 +24,7 @@ struct ViewFault : std::runtime_error {
 };
 
 // That a page can choose from, the best one first.
-inline constexpr DenoiseMethod kViewDenoisers[] = {DenoiseMethod::nfor, DenoiseMethod::preview};
+inline constexpr DenoiseMethod kViewDenoisers[] = {DenoiseMethod::nfor, DenoiseMethod::preview, DenoiseMethod::oidn};
 
 enum class PictureSource : std::uint8_t { live, saved, other };
 
