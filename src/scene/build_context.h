@@ -10,6 +10,7 @@
 #include "spectrum/color_space.h"
 #include "spectrum/curve.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -89,8 +90,10 @@ class BuildContext {
         if (tree.made.empty() || !isBelow(path, tree.made)) built.facts.files.push_back(path);
     }
     void noteInserts() {
+        auto& files = built.facts.files; // of these alone yet; one may be included several times
         for (const auto& [file, insert] : tree.inserts)
-            if (!insert.source.empty()) built.facts.files.push_back(insert.source);
+            if (!insert.source.empty() && std::ranges::find(files, insert.source) == files.end())
+                files.push_back(insert.source);
     }
 
     // What a scene needs simulated, and who asked for it.

@@ -291,6 +291,22 @@ TEST_CASE("reuse: shapes that are alike at one place are not one") {
     CHECK(series.last().built.scene.shapes.size() == 3);
 }
 
+TEST_CASE("reuse: what a text computes changes with the parameters of its file") {
+    const std::string shapes = "param side 1\nparam half \"$side / 2\"\nparam shade 0.4\n"
+                               "shape mesh { points { - 0 0 0; - \"$half * 2\" 0 0; - 0 1 0; - 0 0 1 }; "
+                               "faces { - 0 2 1; - 0 1 3; - 0 3 2; - 1 2 3 } }\n"
+                               "shape sphere { center -1 0.5 0; radius \"$half\"; "
+                               "material diffuse { reflectance \"$shade\" } }\n";
+    Series series;
+    series.next(kHead + shapes);
+    ReuseCounters c = series.next(kHead + replaced(shapes, "side 1", "side 0.7"));
+    CHECK(c.shapesLoaded == 1);
+    CHECK(c.placesMade >= 2);
+    c = series.next(kHead + replaced(shapes, "side 1", "side 0.7"));
+    CHECK(c.shapesLoaded == 0);
+    CHECK(c.placesMade == 0);
+}
+
 TEST_CASE("reuse: materials by face") {
     const Folder folder;
     folder.write("a.obj", "g one\n" + replaced(kTetrahedron, "f 1 4 3", "g two\nf 1 4 3"));
