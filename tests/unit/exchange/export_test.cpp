@@ -425,7 +425,7 @@ TEST_CASE("export: no property is dropped without a word" * doctest::test_suite(
                 for (const char* format : {"mitsuba", "pbrt", "gltf"}) {
                     const std::string without = ex.exported(format, body(base));
                     const std::string codes = ex.codes;
-                    const std::string with = ex.exported(format, body(base + "; " + example));
+                    const std::string with = ex.exported(format, body(base.empty() ? example : base + "; " + example));
                     if (without.empty() || with.empty()) continue;
                     any = true;
                     if (!codes.empty()) continue; // the whole thing is another there, and that is said
