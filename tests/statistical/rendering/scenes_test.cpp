@@ -52,9 +52,10 @@ bool smallLights(const fs::path& path) {
 // within 0.6 % of that of both strategies, the mean found by scattering within 0.04 %. Of films, whose varnish mirrors
 // the sky, 0.7 % and 0.01 %.)
 bool mirrorsLights(const fs::path& path) {
-    // The gold ball of the first scene: half of the pairs of seeds differ, before and after any change.
+    // The gold ball of the first scene: half of the pairs of seeds differ, before and after any change. Of three-balls
+    // with 4096 samples 0.24 % and 0.02 %.
     return path.stem() == "parametric-shapes" || path.stem() == "daylight" || path.stem() == "films" ||
-           path.stem() == "first";
+           path.stem() == "first" || path.stem() == "three-balls";
 }
 
 // Where one strategy alone is so noisy, its distribution has a tail that replicates do not see, and Student's t says
