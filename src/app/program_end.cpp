@@ -35,6 +35,13 @@ void handle(void (*handler)(int), void (*snapshot)(int)) {
 
 } // namespace
 
+ExitCode worse(ExitCode a, ExitCode b) {
+    const auto rank = [](ExitCode c) {
+        return c == ExitCode::done ? 0 : c == ExitCode::threshold ? 1 : c == ExitCode::faulty ? 2 : 3;
+    };
+    return rank(a) >= rank(b) ? a : b;
+}
+
 void endOnSignals() {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
 }

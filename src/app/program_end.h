@@ -34,6 +34,9 @@ inline constexpr ExitCodeText kExitCodes[] = {
     {ExitCode::terminated, "ended by SIGTERM, after saving"},
 };
 
+// The one that matters more, where several files end in different ways: none fails silently for another.
+ExitCode worse(ExitCode, ExitCode);
+
 // While there is nothing to save yet: SIGINT and SIGTERM end the process at once, also where they were ignored on
 // entry, as shells have it for jobs in the background.
 void endOnSignals();

@@ -112,14 +112,6 @@ ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Co
     return options.strict && loaded->diagnostics.warningCount() > 0 ? ExitCode::threshold : ExitCode::done;
 }
 
-// The one that matters more when several files fail in different ways.
-ExitCode worse(ExitCode a, ExitCode b) {
-    const auto rank = [](ExitCode c) {
-        return c == ExitCode::done ? 0 : c == ExitCode::threshold ? 1 : c == ExitCode::faulty ? 2 : 3;
-    };
-    return rank(a) >= rank(b) ? a : b;
-}
-
 } // namespace
 
 ExitCode run(const CheckOptions& options, const CommonOptions& common) {

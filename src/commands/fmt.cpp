@@ -293,14 +293,6 @@ std::vector<std::string> scenesOf(const std::string& path, const Console& consol
     return files;
 }
 
-// The one that matters more: no file fails silently for another.
-ExitCode graver(ExitCode a, ExitCode b) {
-    const auto rank = [](ExitCode c) {
-        return c == ExitCode::done ? 0 : c == ExitCode::threshold ? 1 : c == ExitCode::faulty ? 2 : 3;
-    };
-    return rank(a) >= rank(b) ? a : b;
-}
-
 } // namespace
 
 ExitCode run(const FmtOptions& options, const CommonOptions& common) {
@@ -308,7 +300,7 @@ ExitCode run(const FmtOptions& options, const CommonOptions& common) {
     ExitCode result = ExitCode::done;
     for (const std::string& path : options.paths)
         for (const std::string& file : scenesOf(path, common.console))
-            result = graver(result, formatOrRefuse(file, file == kFromInput, options, common.console));
+            result = worse(result, formatOrRefuse(file, file == kFromInput, options, common.console));
     return result;
 }
 
