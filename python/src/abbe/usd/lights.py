@@ -178,10 +178,8 @@ def _shaped(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission,
     return [node] if write_transform(ctx, node, place, prim) else []
 
 
-def _rect(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission) -> list[Node]:
-    w, h = _input(ctx, prim, "width", 1.0), _input(ctx, prim, "height", 1.0)
-    x, y, _ = _stretch(ctx, place)
-    area = w * h * float(np.linalg.norm(np.cross(x, y)))
+def _instead_of_flat(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission, area: float) -> list[Node] | None:
+    """What stands for a flat light of that area (units of the stage) where it has no extent or a shaping; else None, and its emission is ready."""
     if not _extent(ctx, prim, area):
         return []
     if _normalized(ctx, prim):
@@ -189,6 +187,16 @@ def _rect(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission) -
     shaping = shaping_of(ctx, prim)
     if shaping.angle < 90 or shaping.focus > 0 or shaping.profile is not None:
         return _shaped(ctx, prim, place, node, e, shaping, area * ctx.metres**2, True)
+    return None
+
+
+def _rect(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission) -> list[Node]:
+    w, h = _input(ctx, prim, "width", 1.0), _input(ctx, prim, "height", 1.0)
+    x, y, _ = _stretch(ctx, place)
+    area = w * h * float(np.linalg.norm(np.cross(x, y)))
+    other = _instead_of_flat(ctx, prim, place, node, e, area)
+    if other is not None:
+        return other
     node.word("quad").set("size", w, h)
     _amount(node, "luminance", e.nits, "nits", e.colour)
     _picture(ctx, prim, node)
@@ -216,13 +224,9 @@ def _disk(ctx: Context, prim: Usd.Prim, place: Place, node: Node, e: Emission) -
     r = _input(ctx, prim, "radius", 0.5)
     x, y, _ = _stretch(ctx, place)
     area = math.pi * r * abs(r) * float(np.linalg.norm(np.cross(x, y)))
-    if not _extent(ctx, prim, area):
-        return []
-    if _normalized(ctx, prim):
-        e.nits /= area
-    shaping = shaping_of(ctx, prim)
-    if shaping.angle < 90 or shaping.focus > 0 or shaping.profile is not None:
-        return _shaped(ctx, prim, place, node, e, shaping, area * ctx.metres**2, True)
+    other = _instead_of_flat(ctx, prim, place, node, e, area)
+    if other is not None:
+        return other
     node.word("disk").set("radius", r).set("normal", 0, 0, -1)
     _amount(node, "luminance", e.nits, "nits", e.colour)
     return [node] if write_transform(ctx, node, place, prim) else []
