@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 from support import HEADER, LOOKING_DOWN, WHITE_FLOOR, StageTest, read_exr  # noqa: F401
@@ -62,6 +63,15 @@ class Lights(StageTest):
         light = 'def RectLight "r" { float inputs:intensity = 1000\n double3 xformOp:translate = (0, 5, 0)\n double xformOp:rotateX = 90\n uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateX"]\n }'
         self.convert(world(light))
         self.assertEqual(self.centre(16), 0)
+
+    def test_normalized_nits_to_six_digits(self) -> None:
+        # Renders allow for a per cent or two; what is written allows for nothing.
+        rect, disk = "width = 0.1\n float inputs:height = 0.2", "radius = 0.3"
+        for kind, size, area in (("RectLight", rect, 0.02), ("DiskLight", disk, math.pi * 0.09)):
+            light = f'def {kind} "r" {{ float inputs:intensity = 20\n bool inputs:normalize = true\n float inputs:{size}\n{ROTATE_DOWN} }}'
+            found = re.search(r"luminance ([0-9.eE+-]+) nits", self.convert(world(light)).scene_text)
+            self.assertIsNotNone(found)
+            self.assertAlmostEqual(float(found[1]) * area / 20, 1, delta=1e-6)
 
     def test_normalize_divides_by_the_area_in_the_world(self) -> None:
         # Power stays whatever the scale: L = I / A, and A is 0.1 · 0.2 · 2 · 3.
