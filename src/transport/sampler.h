@@ -6,6 +6,7 @@
 #include "math/sobol.h"
 #include "math/vec.h"
 #include "render/technique.h"
+#include "transport/pixel_square.h"
 
 #include <bit>
 
@@ -28,8 +29,9 @@ struct VertexSample {
 //
 // Dimension 6 is the hero wavelength or, where no density depends on it, the place of all eight within an eighth; which
 // of them is the hero then follows from the same point, as its place in the dimension that makes a (0, 2)-sequence of
-// it. So both are stratified by themselves and as one number, and so they are over squares of pixels
-// (docs/decisions/037-paired-wavelengths.md).
+// it. So both are stratified by themselves and as one number (docs/decisions/037-paired-wavelengths.md).
+//
+// The pixels of a square divide the strata of the joint dimensions among them (transport/pixel_square.h).
 //
 // Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
 // every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
@@ -46,31 +48,38 @@ class Sampler final {
         numbers_ = numbers;
         strata_ = strata;
         groups_ = choices ? 3 : 2;
-        for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
-        shift_ = UInt8{};
+        shuffleSeed_ = seed_;
+        for (int g = 0; g < groups_; ++g) {
+            dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
+            shifts_[g] = UInt8{};
+        }
+        heroShift_ = 0;
         paired_ = false;
     }
     // After startPixel(), for the pixel at (x, y): the 4 × 4 pixels of its square, and the 2 × 2 within, share the
-    // strata of their wavelengths, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
+    // strata of their joint dimensions, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
     // `paired`: dimension 6 is the place within an eighth.
-    void shareWavelengths(std::uint64_t squareSeed, int x, int y, bool paired) {
-        const int place = (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
-        const std::uint32_t first = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
-        dimensionSeeds_[0][kWavelength] = static_cast<std::uint32_t>(squareSeed);
-        shift_[kWavelength] = first ^ kPlaces.within[place];
-        heroShift_ = heroOf(first) ^ kPlaces.hero[place] ^ static_cast<std::uint32_t>(squareSeed >> 61);
+    void shareSquare(std::uint64_t squareSeed, int x, int y, bool paired) {
+        const std::size_t place = PixelSquare::place(x, y);
+        const std::uint64_t scramble = mix64(squareSeed ^ 0x1f83d9abu);
+        shuffleSeed_ = static_cast<std::uint32_t>(squareSeed);
+        for (int g = 0; g < groups_; ++g) {
+            dimensionSeeds_[g] = dimensionSeeds(static_cast<std::uint32_t>(scramble), 8 * g);
+            shifts_[g] = PixelSquare::shift(place, g);
+        }
+        heroShift_ = PixelSquare::heroShift(place) ^ static_cast<std::uint32_t>(scramble >> 61);
         paired_ = paired;
     }
     void start(std::uint32_t index) {
         index_ = index;
         if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
             return fillOther(0, true, joint_);
-        const std::uint32_t shuffled = shuffleIndex(index, seed_);
+        const std::uint32_t shuffled = shuffleIndex(index, shuffleSeed_);
         const UInt8 first = sobolBits(shuffled, 0);
         hero_ = heroOf(first[kWavelength]) ^ heroShift_;
-        scrambleToFloats(first ^ shift_, dimensionSeeds_[0], joint_);
+        scrambleToFloats(first ^ shifts_[0], dimensionSeeds_[0], joint_);
         for (int g = 1; g < groups_; ++g)
-            scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
+            scrambleToFloats(sobolBits(shuffled, 8 * g) ^ shifts_[g], dimensionSeeds_[g], joint_ + 8 * g);
     }
     Vec2 film() const { return {joint_[7], joint_[8]}; }
     // 53 bits, those beyond the sequence's 24 and the hero's 3 at random: a table of wavelengths has cells less likely
@@ -111,25 +120,6 @@ class Sampler final {
   private:
     static constexpr int kWavelength = 6; // its joint dimension
 
-    // What the places of a square add to the digits of the two numbers, as sobolBits() has them. The rows were found by
-    // search: with any number 1, 2, … 32 of samples of each pixel, 2 × 2 and 4 × 4 pixels have one in each of as many
-    // strata of either number, and of both as one.
-    struct Places {
-        std::uint32_t within[16], hero[16];
-    };
-    static constexpr Places places() {
-        constexpr std::uint32_t withinRows[] = {15, 6, 3, 13, 7, 1, 2, 14, 11, 15, 14, 10}, heroRows[] = {11, 13, 7};
-        Places all{};
-        for (std::uint32_t place = 0; place < 16; ++place) {
-            for (int digit = 0; digit < 12; ++digit)
-                all.within[place] |= static_cast<std::uint32_t>(std::popcount(place & withinRows[digit]) & 1) << digit;
-            for (int digit = 0; digit < 3; ++digit)
-                all.hero[place] |= static_cast<std::uint32_t>(std::popcount(place & heroRows[digit]) & 1)
-                                   << (2 - digit);
-        }
-        return all;
-    }
-    static const Places kPlaces;
     // Which eighth the hero is in: three digits of the second dimension of the Faure sequence in base 2 [Faure1982],
     // if the digits of the first are these, the highest in the lowest bit.
     static std::uint32_t heroOf(std::uint32_t digits) {
@@ -149,17 +139,15 @@ class Sampler final {
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
     UInt8 dimensionSeeds_[3] = {};
-    UInt8 shift_ = {};            // of the digits of the wavelengths: counted from the first sample's
-    std::uint32_t heroShift_ = 0; // of hero_, likewise
+    UInt8 shifts_[3] = {};        // of the digits of the joint dimensions
+    std::uint32_t heroShift_ = 0; // of hero_
     std::uint32_t hero_ = 0;      // the eighth in which it is
     bool paired_ = false;
     int groups_ = 0;
     std::uint64_t stream_ = 0;
-    std::uint32_t seed_ = 0, index_ = 0;
+    std::uint32_t seed_ = 0, shuffleSeed_ = 0, index_ = 0; // shuffleSeed_: of the joint dimensions
     std::uint32_t strata_ = 1;
     Technique::Numbers numbers_ = Technique::Numbers::sobol;
 };
-
-inline constexpr Sampler::Places Sampler::kPlaces = Sampler::places();
 
 } // namespace abbe
