@@ -1,6 +1,7 @@
 #include "textures/image_file.h"
 
 #include "base/memory_limit.h"
+#include "base/program_folder.h"
 #include "io/exr_reader.h"
 
 #include <dlfcn.h>
@@ -18,7 +19,7 @@ constexpr const char* kModule = "abbe_images.so";
 // Beside the program, beside the folder of the tests, or where `cmake --install` puts it.
 std::filesystem::path findModule() {
     std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    const auto program = programFolder();
     for (const char* folder : {".", "..", "../lib/abbe"}) {
         auto path = program / folder / kModule;
         if (std::filesystem::exists(path, error)) return path;

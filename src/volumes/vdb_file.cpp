@@ -1,6 +1,7 @@
 #include "volumes/vdb_file.h"
 
 #include "base/memory_limit.h"
+#include "base/program_folder.h"
 #include "base/process.h"
 #include "volumes/vdb_message.h"
 
@@ -53,11 +54,10 @@ class VdbProcess {
 };
 
 std::string helperPath() {
-    std::error_code error;
-    const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (error) return {};
+    const auto folder = programFolder();
+    if (folder.empty()) return {};
     for (const char* place : {".", "../lib/abbe", ".."}) {
-        const auto path = self.parent_path() / place / "abbe-vdb";
+        const auto path = folder / place / "abbe-vdb";
         if (::access(path.c_str(), X_OK) == 0) return path.lexically_normal().string();
     }
     return {};
