@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <string>
 
 namespace abbe {
@@ -191,13 +191,13 @@ const ReflectanceFitter& fitterOf(const RgbSpace& space) {
     struct Last {
         std::array<double, 8> primaries{};
         std::string illuminant;
-        std::optional<ReflectanceFitter> fitter;
+        std::unique_ptr<const ReflectanceFitter> fitter; // 15 kB: a library has little room for what is each thread's
     };
     thread_local Last last;
     const std::array<double, 8> primaries = {space.red.x,  space.red.y,  space.green.x, space.green.y,
                                              space.blue.x, space.blue.y, space.white.x, space.white.y};
     if (!last.fitter || last.primaries != primaries || last.illuminant != space.illuminant) {
-        last.fitter.emplace(space);
+        last.fitter = std::make_unique<const ReflectanceFitter>(space);
         last.primaries = primaries;
         last.illuminant = space.illuminant;
     }
