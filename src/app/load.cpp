@@ -125,7 +125,8 @@ bool SceneLoader::isSame(const SceneInput& input) const {
     return last_ && last_->readable && !last_->pack && !last_->import && last_->tree.inserts.empty() &&
            !last_->asksForFrame() && !input.fromStandardInput && input.path == input_.path &&
            input.defines == input_.defines && input.layers == input_.layers &&
-           input.frame.has_value() == input_.frame.has_value() && identityOf(input.path) == file_;
+           input.frame.has_value() == input_.frame.has_value() && input.text == input_.text &&
+           (input.text || identityOf(input.path) == file_);
 }
 
 std::shared_ptr<LoadedScene> SceneLoader::load(const SceneInput& input) {

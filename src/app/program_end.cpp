@@ -46,20 +46,24 @@ void endOnSignals() {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
 }
 
-InterruptGuard::InterruptGuard() {
+InterruptGuard::InterruptGuard(Signals signals) : signals_(signals) {
     stopRequested = false;
     snapshotRequested = false;
     receivedSignal = 0;
-    handle(onSignal, onSnapshot);
+    if (signals_ == Signals::taken) handle(onSignal, onSnapshot);
 }
 
-InterruptGuard::~InterruptGuard() { handle(SIG_DFL, SIG_DFL); }
+InterruptGuard::~InterruptGuard() {
+    if (signals_ == Signals::taken) handle(SIG_DFL, SIG_DFL);
+}
 
 const std::atomic<bool>& InterruptGuard::stop() const { return stopRequested; }
 
 std::atomic<bool>& InterruptGuard::snapshot() const { return snapshotRequested; }
 
 void InterruptGuard::requestStop() { stopRequested = true; }
+
+void InterruptGuard::requestStopOfAll() { stopRequested = true; }
 
 int InterruptGuard::signal() const { return receivedSignal; }
 

@@ -46,7 +46,9 @@ void endOnSignals();
 // one at a time.
 class InterruptGuard {
   public:
-    InterruptGuard();
+    // `left`: signals are another program's, in which this one is a library; only requestStop() ends the work.
+    enum class Signals : bool { taken, left };
+    explicit InterruptGuard(Signals = Signals::taken);
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
@@ -56,8 +58,13 @@ class InterruptGuard {
     std::atomic<bool>& snapshot() const;
     // As a signal would, without one.
     void requestStop();
+    // The same from any thread, for who has no guard; of no effect on one that begins later.
+    static void requestStopOfAll();
     // The signal that came to end it, or 0.
     int signal() const;
+
+  private:
+    Signals signals_;
 };
 
 } // namespace abbe

@@ -40,6 +40,8 @@ struct MergeOptions {
 };
 
 extern const char* const kMergeHelp;
+// A render of the same scene, with the same settings, that finds all its samples done. Throws CheckpointFault, IoError.
+RenderOptions renderOf(const MergeOptions&);
 void addArguments(Arguments&, MergeOptions&);
 ExitCode run(const MergeOptions&, const CommonOptions&);
 

@@ -42,29 +42,32 @@ RenderOptions commandOf(const CheckpointReader& reader) {
 
 } // namespace
 
-// A render of the same scene, with the same settings, that finds all its samples done.
+RenderOptions renderOf(const MergeOptions& options) {
+    const CheckpointReader first(options.parts.front());
+    RenderOptions render = commandOf(first);
+    std::error_code error;
+    if (!options.scene.empty())
+        render.input.path = options.scene;
+    else if (!std::filesystem::exists(render.input.path, error)) // it may be relative to where the part was made
+        render.input.path = (std::filesystem::path(first.header().folder) / render.input.path).string();
+    render.output = options.output;
+    render.png = options.png;
+    render.view = options.view;
+    render.checkpoint = {};
+    render.checkpoint.off = true;
+    render.crop.reset();
+    render.part.reset();
+    render.skip = 0;
+    render.frames.clear();
+    render.input.frame = frameOf(first.header().identity);
+    render.parts = options.parts;
+    render.soFar = options.soFar;
+    return render;
+}
+
 ExitCode run(const MergeOptions& options, const CommonOptions& common) {
     try {
-        const CheckpointReader first(options.parts.front());
-        RenderOptions render = commandOf(first);
-        std::error_code error;
-        if (!options.scene.empty())
-            render.input.path = options.scene;
-        else if (!std::filesystem::exists(render.input.path, error)) // it may be relative to where the part was made
-            render.input.path = (std::filesystem::path(first.header().folder) / render.input.path).string();
-        render.output = options.output;
-        render.png = options.png;
-        render.view = options.view;
-        render.checkpoint = {};
-        render.checkpoint.off = true;
-        render.crop.reset();
-        render.part.reset();
-        render.skip = 0;
-        render.frames.clear();
-        render.input.frame = frameOf(first.header().identity);
-        render.parts = options.parts;
-        render.soFar = options.soFar;
-        return run(render, common);
+        return run(renderOf(options), common);
     } catch (const CheckpointFault& fault) {
         common.console.report(fault);
         return ExitCode::faulty;

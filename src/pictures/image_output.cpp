@@ -99,6 +99,13 @@ namespace {
 
 PixelWindow windowOf(const PixelBounds& b) { return {b.x0, b.y0, b.x1, b.y1}; }
 
+void warnOfSums(std::size_t unequal, const std::string& path, Diagnostics& diagnostics) {
+    if (unequal == 0) return;
+    diagnostics.warning(
+        "W0656", {},
+        fmt::format("{} values of the light groups or components of `{}` do not add up to the picture", unequal, path));
+}
+
 DeepPicture headOf(const ExrPicture& flat) {
     DeepPicture head{flat.window,         flat.display,   {}, {}, {}, {}, {}, {}, {}, flat.chromaticities,
                      flat.adoptedNeutral, flat.attributes};
@@ -120,24 +127,31 @@ DeepPicture pictureOf(DeepImage deep) {
             {}};
 }
 
-ExrPicture describe(const FilmPicture& shot, const LayerPlanes& channels, const FilmSettings& film,
-                    std::vector<ImageAttribute> attributes) {
-    const ResolvedImage& image = shot.image;
+constexpr const char* kVariance = "variance.Y";
+
+// R G B alone.
+ExrPicture plainPicture(const ResolvedImage& image, const FilmSettings& film) {
     ExrPicture picture;
     picture.window = windowOf(image.bounds);
     picture.display = {0, 0, film.width, film.height};
     picture.r = image.r;
     picture.g = image.g;
     picture.b = image.b;
-    if (!image.variance.empty()) picture.more.push_back({"variance.Y", {}});
-    for (const NamedPlane& plane : channels.planes) picture.more.push_back({plane.name, {}});
-    for (const auto& [name, value] : channels.header) attributes.push_back({name, value});
     picture.chromaticities = Chromaticities::of(rgbSpace(film.space));
     picture.adoptedNeutral = adoptedNeutral(film.space);
     picture.acesContainer = film.acesContainer;
     picture.compression = findExrCompression(film.compression).value_or(ExrCompression::zip);
     picture.half = film.half;
     picture.parts = film.parts;
+    return picture;
+}
+
+ExrPicture describe(const FilmPicture& shot, const LayerPlanes& channels, const FilmSettings& film,
+                    std::vector<ImageAttribute> attributes) {
+    ExrPicture picture = plainPicture(shot.image, film);
+    if (!shot.image.variance.empty()) picture.more.push_back({kVariance, {}});
+    for (const NamedPlane& plane : channels.planes) picture.more.push_back({plane.name, {}});
+    for (const auto& [name, value] : channels.header) attributes.push_back({name, value});
     picture.attributes = std::move(attributes);
     picture.attributes.push_back({"abbe.sensor", film.sensor});
     if (film.adoptedWhite)
@@ -192,11 +206,38 @@ void writeImage(const std::string& path, FilmPicture& shot, const FilmSettings& 
     else
         write({});
     warnOfLosses(report, path, diagnostics);
-    if (source.unequalSums() > 0)
-        diagnostics.warning(
-            "W0656", {},
-            fmt::format("{} values of the light groups or components of `{}` do not add up to the picture",
-                        source.unequalSums(), path));
+    warnOfSums(source.unequalSums(), path, diagnostics);
+}
+
+HeldImage holdImage(FilmPicture& shot, const FilmSettings& film, std::vector<ImageAttribute> attributes) {
+    const PixelBounds bounds = shot.image.bounds;
+    FilmPicture::Rows all = shot.rows(bounds.y0, bounds.y1);
+    HeldImage held;
+    ExrPicture picture = describe(shot, all.layers, film, std::move(attributes));
+    if (all.deep) {
+        held.deep = pictureOf(std::move(*all.deep));
+        DeepPicture head = headOf(picture);
+        held.deep->display = head.display;
+        held.deep->chromaticities = head.chromaticities;
+        held.deep->adoptedNeutral = head.adoptedNeutral;
+        held.deep->attributes = std::move(head.attributes);
+    }
+    held.unequalSums = all.layers.unequalSums;
+    held.attributes = std::move(picture.attributes);
+    held.image = shot.image;
+    held.layers = std::move(all.layers.planes);
+    held.film = film;
+    return held;
+}
+
+void writeImage(const std::string& path, const HeldImage& held, Diagnostics& diagnostics) {
+    ExrPicture picture = plainPicture(held.image, held.film);
+    picture.attributes = held.attributes;
+    if (!held.image.variance.empty()) picture.more.push_back({kVariance, held.image.variance});
+    for (const NamedPlane& plane : held.layers) picture.more.push_back({plane.name, plane.values});
+    if (held.deep) writeDeepExr(deepPath(path), *held.deep);
+    warnOfLosses(writeExr(path, picture), path, diagnostics);
+    warnOfSums(held.unequalSums, path, diagnostics);
 }
 
 void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindow& display) {

@@ -3,10 +3,12 @@
 
 #include "base/diagnostic.h"
 #include "film/film_params.h"
+#include "io/exr_deep.h"
 #include "io/exr_writer.h"
 #include "pictures/display_view.h"
 #include "pictures/film_picture.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,20 @@ bool isForeignDeep(const std::string& path);
 // With the deep image, if there is one; both row by row. Throws IoError, and what the picture's source of layers
 // throws. Warnings (values that half floats cannot hold, channels left out) go to the list.
 void writeImage(const std::string& path, FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>, Diagnostics&);
+
+// A whole image in memory: all that files of it hold, whoever the film belonged to.
+struct HeldImage {
+    ResolvedImage image; // R G B in the film's space, and the variance of Y
+    std::vector<NamedPlane> layers;
+    std::optional<DeepPicture> deep;
+    FilmSettings film;
+    std::vector<ImageAttribute> attributes; // all of them, those of layers among them
+    std::size_t unequalSums = 0;            // LayerPlanes::unequalSums
+};
+// What writeImage() would write, and throws.
+HeldImage holdImage(FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>);
+// The files that writeImage() would have written, but for when. Throws IoError.
+void writeImage(const std::string& path, const HeldImage&, Diagnostics&);
 
 // `rgb`: interleaved, linear, in `space`. Throws IoError.
 struct DisplayPicture {

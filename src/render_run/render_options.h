@@ -48,6 +48,8 @@ struct RenderOptions {
     std::vector<int> frames;         // of an animation: each is rendered by itself, one after the other
     std::optional<FrameOfRun> frame; // the one that is rendered, that of `input`; to a file of its own
 
+    bool inMemory = false; // no files of the image, which a host gets; parts are files all the same
+
     bool makesFiles() const { return !pixel; }
     // Whether parts become one part, not an image.
     bool mergesToPart() const { return !parts.empty() && output.ends_with(".abbe"); }

@@ -104,7 +104,7 @@ bool RenderPreview::write(DisplayPicture picture) {
 
 // Not of parts, which are no image.
 void RenderRun::openPreview() {
-    if (!options_.preview.value_or(true) || options_.part) return;
+    if (!options_.preview.value_or(!options_.inMemory) || options_.part) return;
     preview_.emplace(RenderPreview::How{summary_.image, film_, built_.exposure, options_.view,
                                         static_cast<double>(settings_.samples), settings_.timeLimit,
                                         integrator_->lightBlocks(built_.scene, settings_) > 0});

@@ -88,13 +88,18 @@ ExitCode RenderRun::checkFilm() {
 
 // Hours of rendering must not end in "permission denied" or "no such view".
 ExitCode RenderRun::checkOutputs() {
+    const bool makesPart = options_.part || options_.mergesToPart();
+    if (options_.inMemory && !makesPart) {
+        certificateAlso_ = false;
+        checkView(options_.view, false);
+        return ExitCode::done;
+    }
     const std::string asked = imagePath(options_.output, film_, options_.input.path);
     if (std::string fault = framePatternFault(asked); options_.frame && !fault.empty())
         return refuse("E0433", std::move(fault), "`####` stands for the frame's number with four digits",
                       ExitCode::usage);
     summary_.image = options_.frame ? frameImagePath(asked, options_.frame->number, options_.part) : asked;
     if (options_.part && !options_.frame) summary_.image = partPath(asked, *options_.part);
-    const bool makesPart = options_.part || options_.mergesToPart();
     if (options_.mergesToPart() && isForeignCheckpoint(summary_.image))
         return refuse("E0661", fmt::format("`{}` is there already, and was not made by this program", summary_.image),
                       "`-o FILE` writes the part elsewhere", ExitCode::faulty);
@@ -309,7 +314,9 @@ ExitCode RenderRun::leaveFiles() {
     std::error_code ignored;
     const std::string path = std::exchange(summary_.image, {});
     const std::string file =
-        fmt::format("`{}` {}", path, std::filesystem::exists(path, ignored) ? "stays as it was" : "was not written");
+        path.empty() ? "there is no picture"
+                     : fmt::format("`{}` {}", path,
+                                   std::filesystem::exists(path, ignored) ? "stays as it was" : "was not written");
     summary_.deep.clear();
     if (!summary_.partial)
         return refuse("E0669", fmt::format("the time ended before anything was seen; {}", file),

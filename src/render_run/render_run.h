@@ -12,6 +12,7 @@
 #include "pictures/image_output.h"
 #include "render/integrator.h"
 #include "render/render_state.h"
+#include "render_run/render_host.h"
 #include "render_run/render_options.h"
 #include "render_run/render_preview.h"
 #include "reports/render_report.h"
@@ -34,22 +35,25 @@ struct RenderCarry {
 // One render from the command line to the files. The phases follow each other and are timed.
 class RenderRun {
   public:
-    // Takes over what `carry` has of earlier renders, and leaves it what later ones can use; null: nothing.
-    RenderRun(const RenderOptions& options, const CommonOptions& common, RenderCarry* carry = nullptr)
-        : options_(options), common_(common), carry_(carry),
-          report_(common.json && options.replay.empty()
+    // With a `host` nothing is told on the console, and signals are its own. Takes over what `carry` has of earlier
+    // renders, and leaves it what later ones can use; null: nothing.
+    RenderRun(const RenderOptions& options, const CommonOptions& common, RenderCarry* carry = nullptr,
+              RenderHost* host = nullptr)
+        : options_(options), common_(common), carry_(carry), host_(host),
+          report_(host ? host->report()
+                  : common.json && options.replay.empty()
                       ? makeJsonReport(common.console, options.frame, options.progressEvery)
                       : makeHumanReport(common.console, options.quiet || alone(), options.frame)) {}
 
     ExitCode run() {
         const WorkScope work(Work::preparing);
-        endOnSignals();
+        if (!host_) endOnSignals();
         if (const ExitCode code = load(); code != ExitCode::done) return code;
         if (const ExitCode code = prepare(); code != ExitCode::done) return code;
         if (options_.pixel) return renderPixel();
         if (!options_.replay.empty()) return replay();
         if (!options_.parts.empty()) return merge();
-        InterruptGuard interrupt;
+        InterruptGuard interrupt(host_ ? InterruptGuard::Signals::left : InterruptGuard::Signals::taken);
         PixelFilm film = makeFilm(film_.crop);
         RenderState state(film.bounds(), settings_.range(film.replicates()).first,
                           integrator_->lightBlocks(built_.scene, settings_));
@@ -134,6 +138,7 @@ class RenderRun {
     const RenderOptions& options_;
     const CommonOptions& common_;
     RenderCarry* const carry_;
+    RenderHost* const host_; // or null
     std::unique_ptr<RenderReport> report_;
     std::shared_ptr<LoadedScene> loaded_;
     BuiltScene built_;

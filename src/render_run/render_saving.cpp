@@ -73,6 +73,7 @@ CheckpointHeader RenderRun::checkpointHeader() const {
 // Of a part the checkpoint is the file that is wanted in the end.
 ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
     const CheckpointOptions& options = options_.checkpoint;
+    if (options_.inMemory && !options_.part) return ExitCode::done;
     if (options.off && !options.resume && !options_.part) return ExitCode::done;
     const std::string path = options_.part ? summary_.image : summary_.image + ".ckpt";
     if (!options.resume && isForeignCheckpoint(path))
@@ -253,6 +254,8 @@ void RenderRun::write(const PixelFilm& film) {
 
 // Of renders to one image that end at once, each writes all of its files before the next one does.
 void RenderRun::writeFiles(const PixelFilm& film, FilmPicture& picture, Diagnostics& warnings) {
+    if (host_) host_->take(holdImage(picture, film_, attributes(film)));
+    if (options_.inMemory) return;
     const PathLock lock(summary_.image, kMostPatience);
     if (lock.refused())
         warn("W0670", fmt::format("another render has been writing `{}` for {} s", summary_.image, kMostPatience),
