@@ -26,6 +26,15 @@ function(abbe_rarely_run level)
     endforeach()
 endfunction()
 
+# abbe_shareable(target…): its objects serve the program and the Python extension (python/CMakeLists.txt) alike. What no
+# other library can see or replace costs the program nothing, nor do thread_local variables that the linker places.
+function(abbe_shareable)
+    foreach(target IN LISTS ARGN)
+        set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+        target_compile_options(${target} PRIVATE -ftls-model=initial-exec)
+    endforeach()
+endfunction()
+
 # abbe_library(name folder GROUP … DEPS … PRIVATE_DEPS …): the library of one folder, abbe::name. A folder without
 # sources (render: interfaces only) becomes an INTERFACE library. Project includes are written from the
 # top: "base/check.h" for src/base, "parser/scanner.h", "materials/diffuse.h".
@@ -41,6 +50,7 @@ function(abbe_library name folder)
             add_library(abbe_group_${A_GROUP} STATIC)
             target_include_directories(abbe_group_${A_GROUP} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
             abbe_unity(abbe_group_${A_GROUP})
+            abbe_shareable(abbe_group_${A_GROUP})
         endif()
         target_sources(abbe_group_${A_GROUP} PRIVATE ${sources})
         foreach(dependency IN LISTS A_DEPS A_PRIVATE_DEPS)
@@ -57,6 +67,7 @@ function(abbe_library name folder)
         target_include_directories(abbe_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
         target_link_libraries(abbe_${name} PUBLIC ${A_DEPS} PRIVATE ${A_PRIVATE_DEPS})
         abbe_unity(abbe_${name})
+        abbe_shareable(abbe_${name})
     else()
         add_library(abbe_${name} INTERFACE)
         target_include_directories(abbe_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
