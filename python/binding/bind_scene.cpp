@@ -1,0 +1,49 @@
+#include "binding/bindings.h"
+#include "binding/diagnostic_records.h"
+#include "binding/scene_handle.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace abbe::python {
+
+namespace nb = nanobind;
+
+namespace {
+
+nb::list tuples(const DiagnosticLog& log) {
+    nb::list list;
+    for (const DiagnosticRecord& r : log.records())
+        list.append(nb::make_tuple(r.error ? "error" : "warning", r.code, r.message, r.file, r.line, r.column,
+                                   r.endLine, r.endColumn, r.label, r.notes, r.help));
+    return list;
+}
+
+std::shared_ptr<SceneHandle> makeScene(std::string path, std::optional<std::string> text,
+                                       std::vector<std::string> defines, std::vector<std::string> variants,
+                                       std::vector<std::string> sets) {
+    SceneInput input;
+    input.path = std::move(path);
+    input.text = std::move(text);
+    input.defines = std::move(defines);
+    input.layers = {std::move(variants), std::move(sets)};
+    return std::make_shared<SceneHandle>(std::move(input));
+}
+
+} // namespace
+
+void bindScene(nb::module_& m) {
+    nb::class_<DiagnosticLog>(m, "DiagnosticLog")
+        .def("records", &tuples)
+        .def("text", &DiagnosticLog::text)
+        .def("has_errors", &DiagnosticLog::hasErrors);
+    nb::class_<SceneHandle>(m, "SceneHandle")
+        .def(nb::new_(&makeScene), nb::arg("path"), nb::arg("text").none(), nb::arg("defines"), nb::arg("variants"),
+             nb::arg("sets"))
+        .def("check", &SceneHandle::check, nb::arg("frame").none(), nb::call_guard<nb::gil_scoped_release>())
+        .def("forget", &SceneHandle::forget, nb::call_guard<nb::gil_scoped_release>());
+}
+
+} // namespace abbe::python
