@@ -9,5 +9,6 @@ void bindLanguage(nanobind::module_&); // tables, suggestions, layout, the progr
 void bindScene(nanobind::module_&);
 void bindImage(nanobind::module_&);
 void bindRender(nanobind::module_&);
+void bindArrays(nanobind::module_&);
 
 } // namespace abbe::python

@@ -25,4 +25,5 @@ NB_MODULE(_abbe, m) {
     abbe::python::bindScene(m);
     abbe::python::bindImage(m);
     abbe::python::bindRender(m);
+    abbe::python::bindArrays(m);
 }

@@ -1,5 +1,7 @@
 #include "io/image.h"
 
+#include "io/array_geometry.h"
+
 #include "base/file.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
@@ -34,6 +36,7 @@ void countFaults(RgbImage& image) {
 }
 
 RgbImage readImage(const std::string& path) {
+    if (const auto arrays = findArrays(path)) return imageOf(*arrays, path);
     std::array<char, 4> magic{};
     RegularFile file(path);
     const std::size_t got = file.readAt(0, magic);

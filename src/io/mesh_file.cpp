@@ -1,5 +1,7 @@
 #include "io/mesh_file.h"
 
+#include "io/array_geometry.h"
+
 #include "io/file.h"
 #include "io/gltf.h"
 
@@ -17,6 +19,7 @@ bool isPly(std::string_view bytes) {
 } // namespace
 
 MeshFile readMesh(const std::string& path) {
+    if (const auto arrays = findArrays(path)) return meshOf(*arrays, path);
     const LargeFile file(path);
     const std::string_view bytes = file.bytes();
     if (looksLikeGltf(bytes)) return parseGltf(bytes, path);
@@ -24,6 +27,7 @@ MeshFile readMesh(const std::string& path) {
 }
 
 CageFile readCage(const std::string& path) {
+    if (const auto arrays = findArrays(path)) return cageOf(*arrays, path);
     const LargeFile file(path);
     const std::string_view bytes = file.bytes();
     if (looksLikeGltf(bytes))

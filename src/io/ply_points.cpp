@@ -1,5 +1,7 @@
 #include "io/ply_points.h"
 
+#include "io/array_geometry.h"
+
 #include "base/memory_limit.h"
 #include "io/file.h"
 #include "io/ply_format.h"
@@ -195,6 +197,9 @@ void PointReader::checkSizes() {
 
 PointFile parsePlyPoints(std::string_view bytes, const std::string& name) { return PointReader(bytes, name).read(); }
 
-PointFile readPlyPoints(const std::string& path) { return parsePlyPoints(readFileBytes(path), path); }
+PointFile readPlyPoints(const std::string& path) {
+    if (const auto arrays = findArrays(path)) return pointsOf(*arrays, path);
+    return parsePlyPoints(readFileBytes(path), path);
+}
 
 } // namespace abbe

@@ -2,6 +2,7 @@
 
 #include "base/enclosure.h"
 #include "base/file.h"
+#include "base/named_arrays.h"
 #include "schema/suggest.h"
 
 #include <charconv>
@@ -52,6 +53,7 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
 std::optional<fs::path> lookUpFile(const Value& value, const fs::path& directory, Diagnostics& diagnostics,
                                    bool tiles) {
     const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
+    if (nameable && findArrays(value.text)) return fs::path(value.text);
     const fs::path written(nameable ? value.text : std::string_view());
     const fs::path path = written.is_absolute() ? written : directory / written;
     if (nameable && !mayName(directory, path)) {

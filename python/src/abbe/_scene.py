@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from abbe import _abbe
+from abbe._arrays import take_arrays
 from abbe._errors import Diagnostic, SceneError, diagnostics_of, one_fault, raise_errors
 from abbe._image import Image, Progress, outcome
 from abbe._schema import KINDS, TYPES, default_type, find_type, kind_doc, language_name
@@ -61,7 +63,11 @@ class Definitions:
         named = len(tokens) == 2 or kind in ("object", "spectrum")
         name = head[0] if named else None
         tokens += argument_tokens(encoder, kind, type_name, words)
-        lines = encoder.property_lines(kind, type_name, properties)
+        rest, arrays = take_arrays(kind, type_name, properties, partial(encoder.property_lines, kind, type_name))
+        lines = encoder.property_lines(kind, type_name, rest)
+        if arrays is not None:
+            lines.append(arrays)
+            scene._has_arrays = True
         line = Line(kind, tokens, lines if lines or kind in ("film", "render", *_CONTAINERS) else None)
         self._lines.append(line)
         scene._changed()
@@ -114,6 +120,7 @@ class Scene(Definitions):
         self._variants: list[str] = []
         self._sets: list[str] = []
         self._handle: Any = None
+        self._has_arrays = False
         keys = {"length": length, "rgb": rgb, "up": up}
         self._header = Line("scene", ["1", *(f"{key}={name_word(value)}" for key, value in keys.items() if value is not None)])
 
@@ -156,13 +163,17 @@ class Scene(Definitions):
         self._changed()
 
     def text(self, folder: str | os.PathLike[str] = ".") -> str:
-        """The scene in the layout of `abbe fmt`. Names of files in it are relative to `folder`, where they are inside of it."""
+        """The scene in the layout of `abbe fmt`. Names of files in it are relative to `folder`, where they are inside of it; arrays are rows of
+        numbers."""
+        return self._text(folder, memory=False)
+
+    def _text(self, folder: str | os.PathLike[str], memory: bool) -> str:
         place = os.path.abspath(folder)
         if self._base is not None and self._path is not None and os.path.dirname(os.path.abspath(self._path)) != place:
             raise ValueError(f"{self._path} names its files relative to its own folder; write the scene there, or pack it with `abbe pack`")
         out = [] if self._base is None else [self._base.rstrip("\n")]
         for line in [self._header, *self._lines] if self._base is None else self._lines:
-            line.write(out, place, 0)
+            line.write(out, place, 0, memory)
         return str(_abbe.lay_out("\n".join(out) + "\n"))
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -186,7 +197,7 @@ class Scene(Definitions):
         if self._handle is None:
             path = self._path or os.path.join(os.getcwd(), "scene.scene")
             as_file = self._path is not None and not self._lines
-            text = None if as_file else self.text(os.path.dirname(os.path.abspath(path)))
+            text = None if as_file else self._text(os.path.dirname(os.path.abspath(path)), memory=True)
             self._handle = _abbe.SceneHandle(path, text, self._defines, self._variants, self._sets)
         return self._handle
 
@@ -238,6 +249,8 @@ class Scene(Definitions):
             raise ValueError("a part is a file: give `output`")
         if output is None and (resume or checkpoint is not None):
             raise ValueError("checkpoints lie beside an image: give `output`")
+        if self._has_arrays and (resume or part is not None):
+            raise ValueError("a render is continued elsewhere by what is in its files: write() a scene with arrays, and load() that")
         arguments: dict[str, Any] = {
             "samples": samples, "noise": noise, "time": time, "size": size, "crop": crop, "camera": camera, "frame": frame, "seed": seed,
             "adaptive": adaptive, "memory": memory, "texture_cache": texture_cache, "output": None if output is None else os.fspath(output),

@@ -57,7 +57,7 @@ class Line:
         self.tokens: list[Token] = [name, *tokens]
         self.block = block
 
-    def write(self, out: list[str], folder: str, indent: int) -> None:
+    def write(self, out: list[str], folder: str, indent: int, memory: bool) -> None:
         words = [word if isinstance(word, str) else quoted(_relative(word.path, folder)) for word in self.tokens]
         head = "    " * indent + " ".join(words)
         if self.block is None:
@@ -65,7 +65,7 @@ class Line:
             return
         out.append(head + " {")
         for line in self.block:
-            line.write(out, folder, indent + 1)
+            line.write(out, folder, indent + 1, memory)
         out.append("    " * indent + "}")
 
 

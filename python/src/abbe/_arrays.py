@@ -1,0 +1,145 @@
+"""Geometry and pictures out of numpy arrays, without a file: the renderer reads them where they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abbe import _abbe
+from abbe._schema import language_name
+from abbe._values import Line, quoted
+
+# What of a type arrays may state: three or two numbers, or one, for each point; whole numbers.
+_VECTORS = {"points": 3, "normals": 3, "uvs": 2, "radii": 1}
+_SHAPES = {
+    ("shape", "mesh"): ("points", "faces", "uvs", "attribute"),
+    ("shape", "subdivision"): ("points", "faces"),
+    ("shape", "points"): ("points", "normals", "radii"),
+    ("shape", "curves"): ("points", "counts", "radii"),
+    ("light", "mesh"): ("points", "faces"),
+    ("light", "environment"): ("image",),
+}
+
+
+class ArraysLine(Line):
+    """The line that names arrays: a file in memory while the scene lives, rows of numbers in a text."""
+
+    def __init__(self, handle: Any, name: str, inline: Callable[[], list[Line]]) -> None:
+        super().__init__(name, [quoted(handle.name)])
+        self._handle = handle
+        self._inline = inline
+
+    def write(self, out: list[str], folder: str, indent: int, memory: bool) -> None:
+        if memory:
+            super().write(out, folder, indent, memory)
+            return
+        for line in self._inline():
+            line.write(out, folder, indent, memory)
+
+
+def is_array(value: Any) -> bool:
+    return isinstance(value, np.ndarray) and value.ndim > 0
+
+
+def _of_attribute(value: Any) -> bool:
+    pairs = value if isinstance(value, list) else [value]
+    return all(isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[0], str) and is_array(pair[1]) for pair in pairs)
+
+
+def _floats(what: str, value: Any) -> NDArray[np.float32]:
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{what}: an array of numbers is expected, not of {array.dtype}")
+    made = np.ascontiguousarray(array, dtype=np.float32)
+    if not np.isfinite(made).all():
+        raise ValueError(f"{what}: number {int(np.argmin(np.isfinite(made)))} is not finite")
+    return made
+
+
+def _vectors(what: str, value: Any, width: int, count: int | None) -> NDArray[np.float32]:
+    made = _floats(what, value)
+    shape = "(N,)" if width == 1 else f"(N, {width})"
+    if made.ndim != (1 if width == 1 else 2) or (width > 1 and made.shape[1] != width):
+        raise ValueError(f"{what}: an array of shape {shape} is expected, not {made.shape}")
+    if count is not None and len(made) != count:
+        raise ValueError(f"{what}: {len(made)} for {count} points")
+    return made
+
+
+def _wholes(what: str, value: Any, below: int) -> NDArray[np.uint32]:
+    array = np.asarray(value)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{what}: an array of whole numbers is expected, not of {array.dtype}")
+    if array.size and (array.min() < 0 or array.max() >= below):
+        wrong = int(array.max()) if array.max() >= below else int(array.min())
+        raise ValueError(f"{what}: {wrong} is not between 0 and {below - 1}")
+    if array.dtype == np.int32 and array.flags.c_contiguous:
+        return array.view(np.uint32)
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def _faces(value: Any, points: int) -> tuple[dict[str, NDArray[np.uint32]], int]:
+    """Arrays, and the corners of each face, 0 where their number is an array of its own."""
+    if is_array(value):
+        if value.ndim != 2 or value.shape[1] < 3:
+            raise ValueError(f"faces: an array of shape (F, 3) or more is expected, not {value.shape}")
+        return {"faces": _wholes("faces", value, points)}, value.shape[1]
+    sizes = np.array([len(row) for row in value], dtype=np.uint32)
+    corners = np.array([i for row in value for i in row])
+    return {"faces": _wholes("faces", corners, points), "face-sizes": sizes}, 0
+
+
+def _picture(value: Any) -> tuple[NDArray[np.float32], tuple[int, int, int]]:
+    made = _floats("image", value)
+    if made.ndim != 3 or made.shape[2] != 3:
+        raise ValueError(f"image: an array of shape (height, width, 3) is expected, not {made.shape}")
+    return made, (made.shape[1], made.shape[0], 3)
+
+
+def take_arrays(
+    kind: str, type_name: str | None, properties: Mapping[str, Any], inline: Callable[[Mapping[str, Any]], list[Line]]
+) -> tuple[dict[str, Any], ArraysLine | None]:
+    """Properties without those that arrays state, and the line for these; `inline` makes lines of them for a text."""
+    by_name = {language_name(keyword): keyword for keyword in properties}
+    known = _SHAPES.get((kind, type_name or ""), ())
+    main = next((name for name in ("points", "image") if name in known and name in by_name), None)
+    if main is None or not is_array(properties[by_name[main]]):
+        return dict(properties), None
+    taken = {name: properties[by_name[name]] for name in known if name in by_name}
+    if "attribute" in taken and not _of_attribute(taken["attribute"]):
+        raise TypeError("attribute: (name, array), or a list of such, is expected beside arrays")
+    rest = {keyword: value for name, keyword in by_name.items() for value in [properties[keyword]] if name not in taken}
+    if main == "image":
+        pixels, size = _picture(taken["image"])
+
+        def refuse() -> list[Line]:
+            raise ValueError("a picture that is an array has no place in a text: save it as an EXR, and name that")
+
+        return rest, ArraysLine(_abbe.ArraysHandle("image", {"pixels": pixels}, {}, size), "image", refuse)
+    handle = _geometry(kind, taken)
+    return rest, ArraysLine(handle, "file", lambda: inline(taken))
+
+
+def _geometry(kind: str, taken: Mapping[str, Any]) -> Any:
+    points = _vectors("points", taken["points"], 3, None)
+    floats, integers, corners = {"points": points}, {}, 0
+    for name, value in taken.items():
+        if name == "faces":
+            faces, corners = _faces(value, len(points))
+            integers.update(faces)
+        elif name == "counts":
+            integers["counts"] = _wholes("counts", value, len(points) + 1)
+            if integers["counts"].sum(dtype=np.int64) != len(points):
+                raise ValueError(f"counts: they come to {integers['counts'].sum(dtype=np.int64)}, but there are {len(points)} points")
+        elif name == "attribute":
+            for label, array in value if isinstance(value, list) else [value]:
+                width = 3 if np.ndim(array) == 2 else 1
+                floats[f"attribute:{label}"] = _vectors(f"attribute {label}", array, width, len(points))
+        elif name != "points":
+            floats[name] = _vectors(name, value, _VECTORS[name], len(points))
+    if "radii" in floats and (floats["radii"] < 0).any():
+        raise ValueError("radii: one is below 0")
+    return _abbe.ArraysHandle(kind, floats, integers, (corners, 0, 0))
