@@ -29,10 +29,10 @@ Plane plane(nb::handle_t<ImageHandle> self, const std::string& name) {
 }
 
 Colours colours(const ImageHandle& image, const std::string& name) {
-    const auto space = findRgbSpace(name);
+    const auto space = name == "xyz" || name == rgb::xyz.name ? std::optional(rgb::xyz) : findRgbSpace(name);
     if (!space) {
-        std::string known;
-        for (const std::string_view one : rgbSpaceNames()) known += (known.empty() ? "" : ", ") + std::string(one);
+        std::string known = "xyz";
+        for (const std::string_view one : rgbSpaceNames()) known += ", " + std::string(one);
         throw nb::value_error(("no colour space is called `" + name + "`; there are " + known).c_str());
     }
     auto* const values = new std::vector<float>(image.rgb(*space));

@@ -38,7 +38,9 @@ ImageHandle ImageHandle::read(const std::string& path) {
     held.film.compression = findExrCompression(info.compression) ? info.compression : "zip";
     held.film.half = false;
     held.film.parts = info.parts > 1;
-    held.attributes = info.attributes;
+    for (const ImageAttribute& a : info.attributes) // OpenEXR's own follow from the rest
+        if (a.name.starts_with("abbe.") || a.name.starts_with("cryptomatte/") || a.name == "colorInteropID")
+            held.attributes.push_back(a);
     bool colour = true;
     for (std::size_t i = 0; i < info.channels.size(); ++i) {
         const std::string& name = info.channels[i].name;

@@ -53,7 +53,8 @@ def _floats(what: str, value: Any) -> NDArray[np.float32]:
     array = np.asarray(value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{what}: an array of numbers is expected, not of {array.dtype}")
-    made = np.ascontiguousarray(array, dtype=np.float32)
+    with np.errstate(over="ignore"):
+        made = np.ascontiguousarray(array, dtype=np.float32)
     if not np.isfinite(made).all():
         raise ValueError(f"{what}: number {int(np.argmin(np.isfinite(made)))} is not finite")
     return made

@@ -37,3 +37,8 @@ def command(*words: str, **options: object) -> subprocess.CompletedProcess[str]:
     """The program: $ABBE, else that of the package."""
     program = [os.environ["ABBE"]] if "ABBE" in os.environ else [sys.executable, "-m", "abbe"]
     return subprocess.run([*program, *words], capture_output=True, text=True, check=True, **options)  # type: ignore[call-overload,no-any-return]
+
+
+def wheel_is_whole() -> bool:
+    """Whether the package that is tested has its shared libraries inside (tests/python_package.sh)."""
+    return os.environ.get("ABBE_WHEEL") == "whole"

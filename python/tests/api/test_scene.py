@@ -14,7 +14,9 @@ class Text(InFolder):
     def test_words_units_blocks_and_nodes(self) -> None:
         scene = abbe.Scene(length="cm")
         scene.camera(from_=(0, 1, 4), look_at="0 0.5 0", fov="40 deg")
-        scene.shape("ball", "sphere", radius="10 mm", material=abbe.node("diffuse", reflectance=0.5), transform=[("rotate", "y", "45 deg"), ("scale", 2)])
+        scene.shape(
+            "ball", "sphere", radius="10 mm", material=abbe.node("diffuse", reflectance=0.5), transform=[("rotate", "y", "45 deg"), ("scale", 2)]
+        )
         self.assertEqual(
             scene.text(),
             "scene 1 length=cm\n"
@@ -40,7 +42,26 @@ class Text(InFolder):
         self.assertTrue((again.render(samples=4).rgb() == scene.render(samples=4).rgb()).all())
 
     def test_no_text_leaves_its_value(self) -> None:
-        hostile = ['a"b', "a\\b", "a\nshape sphere", 'x" }\nlight sky', "{", "}", "// no", "/* no */", "a;b", "\u202e", "\ufeff", "\x00", "\x7f", "é", "true", "1x", "-1", ""]
+        hostile = [
+            'a"b',
+            "a\\b",
+            "a\nshape sphere",
+            'x" }\nlight sky',
+            "{",
+            "}",
+            "// no",
+            "/* no */",
+            "a;b",
+            "\u202e",
+            "\ufeff",
+            "\x00",
+            "\x7f",
+            "é",
+            "true",
+            "1x",
+            "-1",
+            "",
+        ]
         for name in hostile:
             scene = ball()
             if not name:
@@ -86,7 +107,24 @@ class Text(InFolder):
         self.assertEqual(abbe.load(self.folder / "b.scene").render(samples=1).width, 16)
 
     def test_every_kind_has_a_method_with_units_and_defaults(self) -> None:
-        for kind in ("camera", "light", "shape", "group", "object", "instance", "instances", "material", "phase", "medium", "volume", "atmosphere", "spectrum", "texture", "film", "render_settings"):
+        for kind in (
+            "camera",
+            "light",
+            "shape",
+            "group",
+            "object",
+            "instance",
+            "instances",
+            "material",
+            "phase",
+            "medium",
+            "volume",
+            "atmosphere",
+            "spectrum",
+            "texture",
+            "film",
+            "render_settings",
+        ):
             self.assertGreater(len(getattr(abbe.Scene, kind).__doc__), 30, kind)
         self.assertIn("radius: number in m, 1e-30 to 1e+15; default 0.5", abbe.Scene.shape.__doc__)
         self.assertIn("focal", abbe.explain("camera.lens").lower())
@@ -136,7 +174,16 @@ class Errors(InFolder):
 
     def test_wrong_values(self) -> None:
         scene = ball()
-        for wrong in ({"samples": 0}, {"samples": 2.5}, {"noise": -1}, {"size": (0, 1)}, {"size": (1, 2, 3)}, {"crop": (3, 0, 1, 1)}, {"part": (1, 2)}, {"resume": True}):
+        for wrong in (
+            {"samples": 0},
+            {"samples": 2.5},
+            {"noise": -1},
+            {"size": (0, 1)},
+            {"size": (1, 2, 3)},
+            {"crop": (3, 0, 1, 1)},
+            {"part": (1, 2)},
+            {"resume": True},
+        ):
             with self.assertRaises(ValueError, msg=str(wrong)):
                 scene.render(**wrong)
         self.assertRaises(TypeError, scene.shape, "sphere", radius={"a": 1}, material=object())
