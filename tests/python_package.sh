@@ -6,7 +6,7 @@ set -euo pipefail
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 place=$root/build/wheel
 rm -f "$place"/*.whl
-wheel=$("$root/packaging/wheel.sh" "$place" "$root/build/dev" RelWithDebInfo | tail -n 1)
+wheel=$("$root/packaging/wheel.sh" "$place" dev RelWithDebInfo | tail -n 1)
 printf '%s, %s bytes\n' "$(basename "$wheel")" "$(stat -c %s "$wheel")"
 rm -rf "$place/venv"
 python3 -m venv "$place/venv"

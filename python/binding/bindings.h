@@ -10,5 +10,6 @@ void bindScene(nanobind::module_&);
 void bindImage(nanobind::module_&);
 void bindRender(nanobind::module_&);
 void bindArrays(nanobind::module_&);
+void bindSpectrum(nanobind::module_&);
 
 } // namespace abbe::python

@@ -26,4 +26,5 @@ NB_MODULE(_abbe, m) {
     abbe::python::bindImage(m);
     abbe::python::bindRender(m);
     abbe::python::bindArrays(m);
+    abbe::python::bindSpectrum(m);
 }
