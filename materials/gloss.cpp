@@ -36,24 +36,30 @@ GlossTable::GlossTable(double ior, float roughness) {
     mean_ = static_cast<float>(mean);
 }
 
-GlossRange::GlossRange(double ior, const schema::TexturedNumber& roughness)
+GlossRange::GlossRange(double ior, const schema::TexturedNumber& roughness, KeptTables* kept)
     : ior_(static_cast<float>(ior)), roughness_(roughness, 0, 1) {
     if (std::abs(ior_ - 1) < 1e-6f) return;
+    using Tables = std::vector<GlossTable>;
     if (!textured()) {
-        tables_.emplace_back(ior, static_cast<float>(roughness.value));
+        tables_ = std::make_shared<const Tables>(1, GlossTable(ior, static_cast<float>(roughness.value)));
         return;
     }
-    tables_.resize(kRoughnesses, GlossTable(ior, 0));
-    parallelFor(kRoughnesses - 1, [&](std::size_t i) {
-        tables_[i + 1] = GlossTable(ior, static_cast<float>(i + 1) / (kRoughnesses - 1));
+    DigestWriter key("gloss");
+    key.number(ior);
+    tables_ = KeptTables::get<Tables>(kept, key.digest(), [&] {
+        auto tables = std::make_shared<Tables>(kRoughnesses, GlossTable(ior, 0));
+        parallelFor(kRoughnesses - 1, [&](std::size_t i) {
+            (*tables)[i + 1] = GlossTable(ior, static_cast<float>(i + 1) / (kRoughnesses - 1));
+        });
+        return tables;
     });
 }
 
 Gloss GlossRange::of(float roughness) const {
     Gloss gloss(ior_, roughness);
-    if (tables_.empty()) return gloss;
-    gloss.below_ = gloss.above_ = tables_.data();
-    if (tables_.size() == 1) return gloss;
+    if (!tables_) return gloss;
+    gloss.below_ = gloss.above_ = tables_->data();
+    if (tables_->size() == 1) return gloss;
     const float x = roughness * (kRoughnesses - 1);
     const int i = std::min(static_cast<int>(x), kRoughnesses - 2);
     gloss.below_ += i;

@@ -3,11 +3,13 @@
 
 #include "materials/ggx.h"
 #include "render/bsdf.h"
+#include "render/kept_tables.h"
 #include "render/surface_input.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -76,8 +78,9 @@ class Gloss {
 // them. Immutable, thread-safe.
 class GlossRange {
   public:
-    // Index relative to what is around it, > 0; roughness 0 … 1.
-    GlossRange(double ior, const schema::TexturedNumber& roughness);
+    // Index relative to what is around it, > 0; roughness 0 … 1. Tables of a roughness that varies take a while, and
+    // depend on the index alone.
+    GlossRange(double ior, const schema::TexturedNumber& roughness, KeptTables* kept = nullptr);
 
     Gloss at(const SurfaceHit& hit) const { return of(roughness_.at(hit)); }
     bool textured() const { return roughness_.textured(); }
@@ -88,7 +91,7 @@ class GlossRange {
 
     float ior_;
     NumberInput roughness_;
-    std::vector<GlossTable> tables_; // empty if the index is 1
+    std::shared_ptr<const std::vector<GlossTable>> tables_; // null if the index is 1
 };
 
 } // namespace abbe

@@ -151,8 +151,8 @@ class LayeredBsdf final : public Bsdf {
 
 class Layered final : public Material {
   public:
-    Layered(const LayeredParams& params, const Material& base)
-        : base_(base), gloss_(params.ior->at(587.6), params.roughness), tint_(params.tint, 1),
+    Layered(const LayeredParams& params, const Material& base, KeptTables* kept)
+        : base_(base), gloss_(params.ior->at(587.6), params.roughness, kept), tint_(params.tint, 1),
           absorption_(params.absorption), thickness_(static_cast<float>(params.thickness)),
           scale_(params.thicknessScale, 0, kThickest), darkening_(params.darkening, 0, 1) {
         traits_ = {
@@ -268,8 +268,8 @@ schema::TypeInfo layeredType() {
             .fields = std::move(fields)};
 }
 
-std::unique_ptr<const Material> makeLayered(const LayeredParams& params, const Material& base) {
-    return std::make_unique<Layered>(params, base);
+std::unique_ptr<const Material> makeLayered(const LayeredParams& params, const Material& base, KeptTables* kept) {
+    return std::make_unique<Layered>(params, base, kept);
 }
 
 } // namespace abbe

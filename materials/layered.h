@@ -1,6 +1,7 @@
 // A clear coat over another material: varnish, lacquer, a wet film.
 #pragma once
 
+#include "render/kept_tables.h"
 #include "render/material.h"
 #include "schema/type.h"
 
@@ -21,7 +22,7 @@ struct LayeredParams {
 
 schema::TypeInfo layeredType();
 // Refers to the base, which must outlive it, as must curves and textures. Requires that the base has no inside, is no
-// boundary and does not emit.
-std::unique_ptr<const Material> makeLayered(const LayeredParams&, const Material& base);
+// boundary and does not emit. `kept`: tables of the coat.
+std::unique_ptr<const Material> makeLayered(const LayeredParams&, const Material& base, KeptTables* kept = nullptr);
 
 } // namespace abbe

@@ -64,7 +64,8 @@ class DiffuseBoundaryBsdf final : public Bsdf {
 
 class DiffuseBoundary final : public Material {
   public:
-    DiffuseBoundary(double ior, const schema::TexturedNumber& roughness) : gloss_(ior, roughness) {
+    DiffuseBoundary(double ior, const schema::TexturedNumber& roughness, KeptTables* kept)
+        : gloss_(ior, roughness, kept) {
         traits_ = {.usesTextures = gloss_.textured()};
     }
 
@@ -131,9 +132,9 @@ schema::TypeInfo subsurfaceType() {
             }};
 }
 
-std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams& params) {
+std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams& params, KeptTables* kept) {
     if (params.boundary.word == "diffuse")
-        return std::make_unique<DiffuseBoundary>(params.ior->at(587.6), params.roughness);
+        return std::make_unique<DiffuseBoundary>(params.ior->at(587.6), params.roughness, kept);
     DielectricParams dielectric;
     dielectric.ior = params.ior;
     dielectric.roughness = params.roughness;

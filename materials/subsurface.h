@@ -2,6 +2,7 @@
 #pragma once
 
 #include "materials/interior_curves.h"
+#include "render/kept_tables.h"
 #include "render/material.h"
 #include "schema/type.h"
 
@@ -20,8 +21,8 @@ struct SubsurfaceParams {
 };
 
 schema::TypeInfo subsurfaceType();
-// The surface alone, and what is inside. Curves and textures must outlive either.
-std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams&);
+// The surface alone, and what is inside. Curves and textures must outlive either. `kept`: tables of the gloss.
+std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams&, KeptTables* kept = nullptr);
 std::optional<SubsurfaceInside> insideOf(const SubsurfaceParams&);
 
 } // namespace abbe

@@ -261,7 +261,11 @@ std::unique_ptr<const Material> makeMixOf(const MixParams& params, const Materia
 
 std::unique_ptr<const Material> makeLayeredOf(const LayeredParams& params, const MaterialContext& parts) {
     if (!canBePart(params.base, "base", parts) || !isOpaque(params.base, "base", parts)) return nullptr;
-    return makeLayered(params, parts[params.base]);
+    return makeLayered(params, parts[params.base], parts.scene.tables());
+}
+
+std::unique_ptr<const Material> makeSubsurfaceOf(const SubsurfaceParams& params, const MaterialContext& context) {
+    return makeSubsurfaceSurface(params, context.scene.tables());
 }
 
 std::unique_ptr<const Material> makeTwoSidedOf(const TwoSidedParams& params, const MaterialContext& parts) {

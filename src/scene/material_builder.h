@@ -6,6 +6,7 @@
 #include "materials/layered.h"
 #include "materials/mix.h"
 #include "materials/openpbr.h"
+#include "materials/subsurface.h"
 #include "materials/two_sided.h"
 #include "render/material.h"
 #include "scene/build_context.h"
@@ -130,6 +131,7 @@ class MaterialBuilder {
 // From bound parameters, whose references are valid; null after an error.
 std::unique_ptr<const Material> makeMixOf(const MixParams&, const MaterialContext&);
 std::unique_ptr<const Material> makeLayeredOf(const LayeredParams&, const MaterialContext&);
+std::unique_ptr<const Material> makeSubsurfaceOf(const SubsurfaceParams&, const MaterialContext&);
 std::unique_ptr<const Material> makeTwoSidedOf(const TwoSidedParams&, const MaterialContext&);
 
 // Takes out of a material what the command leaves out.

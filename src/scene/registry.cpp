@@ -229,7 +229,7 @@ void addMaterials(std::vector<RegistryEntry>& list) {
     list.push_back(material<DiffuseParams, makeDiffuse>(diffuseType()));
     list.push_back(material<ConductorParams, makeConductor>(conductorType()));
     list.push_back(material<DielectricParams, makeDielectric>(dielectricType()));
-    list.push_back(material<SubsurfaceParams, makeSubsurfaceSurface>(subsurfaceType()));
+    list.push_back(material<SubsurfaceParams, makeSubsurfaceOf>(subsurfaceType()));
     list.push_back(material<MixParams, makeMixOf>(mixMaterialType()));
     list.push_back(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
     list.push_back(material<LayeredParams, makeLayeredOf>(layeredType()));
