@@ -55,14 +55,14 @@ set(allowed_exchange/exporter ${allowed_exchange/shared} exchange/shared ${write
 set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/importer ${writers} exchange/exporter)
 set(allowed_app ${allowed_scene} parser scene packs ${exchange})
 set(allowed_language_server ${allowed_app} app)
-set(allowed_pictures ${allowed_app} app)
+set(allowed_pictures ${allowed_app} app tev)
 set(allowed_pages ${allowed_app} app)
 set(allowed_checkpoints ${allowed_app} app study)
 set(allowed_reports ${allowed_app} app pictures pages study verify)
-set(allowed_command_line ${allowed_app} app pictures)
+set(allowed_command_line ${allowed_app} app pictures tev)
 set(allowed_render_run ${allowed_reports} reports checkpoints tev)
 set(allowed_farm ${allowed_app} app checkpoints study)
-set(allowed_view ${allowed_reports} reports denoise)
+set(allowed_view ${allowed_reports} reports denoise tev)
 set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor view language_server)
 set(folders base math spectrum tev denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules guiding transport light_sampling ${techniques} path_tracing rendering scene study verify doctor

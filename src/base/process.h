@@ -1,6 +1,7 @@
 // Other programs: started without a shell, and waited for.
 #pragma once
 
+#include <span>
 #include <string>
 #include <sys/types.h>
 #include <vector>
@@ -17,8 +18,32 @@ struct ProcessEnd {
 ProcessEnd runProcess(const std::vector<std::string>& words);
 
 // Starts a program, found on the PATH if its name has no slash, with these descriptors for stdout and stderr; it reads
-// nothing from stdin and has the signals of a fresh program. Returns errno, 0 when it runs.
-int spawnProcess(const std::vector<std::string>& words, int out, int err, pid_t& process);
+// nothing from stdin and has the signals of a fresh program; `apart`: not those of the terminal, such as Ctrl-C.
+// Returns errno, 0 when it runs.
+int spawnProcess(const std::vector<std::string>& words, int out, int err, pid_t& process, bool apart = false);
+
+// A program that is fed through its stdin; it says nothing on stdout that anybody wants. Interrupts of the terminal do
+// not reach it, so that it ends when its food does. Requires SIGPIPE to be ignored.
+class FedProcess {
+  public:
+    // Throws std::system_error if it cannot be started.
+    explicit FedProcess(const std::vector<std::string>& words);
+    // Kills it, if it still runs.
+    ~FedProcess();
+    FedProcess(const FedProcess&) = delete;
+    FedProcess& operator=(const FedProcess&) = delete;
+
+    // False: it has ended, or took nothing for a minute. Waits while it is slow.
+    bool feed(std::span<const char> bytes);
+    // Nothing more comes. Waits for its end; `out` is empty.
+    ProcessEnd finish();
+
+  private:
+    void hangUp();
+
+    pid_t process_ = -1;
+    int food_ = -1, said_ = -1; // descriptors: its stdin, and a file without a name of what it says
+};
 
 // A program that goes on beside this one. Its output is appended to a file.
 class ChildProcess {

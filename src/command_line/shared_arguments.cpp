@@ -31,6 +31,39 @@ void addView(Arguments& a, ViewOptions& view) {
     a.value("--exposure", "STOPS", &view.exposure, "Brighten the PNG by so many stops");
 }
 
+namespace {
+
+// "25", "29.97", "24000/1001"; as a scene may have it.
+std::optional<double> readRate(const std::string& text) {
+    const auto slash = text.find('/');
+    const auto numberOf = [](std::string_view part) {
+        double value = 0;
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+        return error == std::errc() && end == part.data() + part.size() ? value : 0;
+    };
+    const double above = numberOf(std::string_view(text).substr(0, slash));
+    const double below = slash == std::string::npos ? 1 : numberOf(std::string_view(text).substr(slash + 1));
+    const double rate = below > 0 ? above / below : 0;
+    return rate >= 0.001 && rate <= 1e6 ? std::optional(rate) : std::nullopt;
+}
+
+} // namespace
+
+void addRate(Arguments& a, BuildOptions& b) {
+    a.read("--fps", "RATE", b.fps, "frames in a second such as 25 or 24000/1001", readRate,
+           "Frames in a second, in place of the scene's");
+}
+
+void addTev(Arguments& a, std::optional<TevAddress>& tev, const char* help) {
+    const auto read = [&tev](const std::string& text) {
+        TevAddress address;
+        std::string fault = text == "." ? std::string() : readTevAddress(text, address);
+        if (fault.empty()) tev = address;
+        return fault;
+    };
+    a.value("--tev", "HOST:PORT", read, help).valueOptional = true;
+}
+
 void addPng(Arguments& a, PngOptions& png, const ViewOptions& view) {
     const auto read = [&png](const std::string& text) {
         png.off = text == "off";

@@ -6,6 +6,7 @@
 #include "pictures/display_view.h"
 #include "pictures/image_output.h"
 #include "scene/build.h"
+#include "tev/tev_image.h"
 
 #include <optional>
 #include <string>
@@ -30,6 +31,10 @@ void addFrame(Arguments&, BuildOptions&);
 void addTechniques(Arguments&, BuildOptions&, const char* strategyHelp, const char* samplerHelp, const char* heading);
 // `--frame`, of commands that look at one moment of an animation.
 void addMoment(Arguments&, std::optional<int>& frame);
+// `--fps`, of commands that look at frames.
+void addRate(Arguments&, BuildOptions&);
+// `--tev`, whose place may be left out.
+void addTev(Arguments&, std::optional<TevAddress>&, const char* help);
 // `--size` of pictures that a command makes itself.
 void addOwnSize(Arguments&, std::optional<Vec2i>& size, std::string help);
 inline constexpr double kLargestSeed = 9007199254740992; // 2^53

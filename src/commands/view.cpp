@@ -18,6 +18,7 @@ Examples:
   abbe view room.scene                  prints the address of the page; Ctrl-C ends it
   abbe view room.scene --open           and opens it
   abbe view room.scene --size 640x360 --samples 256
+  abbe view room.scene --tev            shows the picture in tev as well
   abbe view room.scene --port 8080      the same address each time, but for its token
 
 The picture begins anew whenever the scene or a file that it names is saved, and whenever the camera is moved in the
@@ -27,6 +28,7 @@ void addArguments(Arguments& a, ViewRequest& o) {
     a.argument("scene", &o.input.path, "Scene file").require();
     a.value("--port", "N", &o.port, "Port of this machine; without it a free one").between(1, 65535);
     a.flag("--open", &o.open, "Open the page in the browser");
+    addTev(a, o.tev, "Show the picture and its layers in tev, too; 127.0.0.1:14158");
     addFrame(a, o.build);
     a.value("--samples", "N", &o.build.samples, "Samples per pixel").between(1, 4294967295.0);
     a.read("--adaptive", "on|off", o.build.adaptive, "on or off", readSwitch,
@@ -40,13 +42,31 @@ void addArguments(Arguments& a, ViewRequest& o) {
 
 namespace {
 
-// Who has no such program opens the page by hand.
+// Who has no such program opens the page by hand. A browser that is started by it outlives this program, however that
+// ends.
 void openPage(const std::string& url) {
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     pid_t process = 0;
-    if (nowhere >= 0) static_cast<void>(spawnProcess({"xdg-open", url}, nowhere, nowhere, process));
+    if (nowhere >= 0) static_cast<void>(spawnProcess({"xdg-open", url}, nowhere, nowhere, process, true));
     if (nowhere >= 0) ::close(nowhere);
 }
+
+// Says it once when the viewer that was asked for is not there, or is no longer.
+class TevWatch {
+  public:
+    void look(const ViewSession& session, const Console& console) {
+        const std::string why = session.tevAbsence();
+        if (!why.empty() && !absent_) {
+            Diagnostics found;
+            found.warning("W0679", {}, why).help = kTevHelp;
+            console.report(found, {});
+        }
+        absent_ = !why.empty();
+    }
+
+  private:
+    bool absent_ = false;
+};
 
 } // namespace
 
@@ -64,7 +84,11 @@ ExitCode run(const ViewRequest& asked, const CommonOptions& common) {
     server.start();
     common.console.data(server.url() + "\n");
     if (request.open) openPage(server.url());
-    while (!interrupt.stop()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    TevWatch tev;
+    while (!interrupt.stop()) {
+        tev.look(session, common.console);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
     return ExitCode::done;
 }
 

@@ -1,9 +1,9 @@
+#include "pictures/tev_rows.h"
 #include "render_run/render_preview.h"
 #include "render_run/render_run.h"
 #include "spectrum/color_space.h"
 
 #include <algorithm>
-#include <array>
 
 namespace abbe {
 
@@ -12,39 +12,10 @@ namespace {
 constexpr int kRowsAtOnce = 64;
 constexpr double kMostForTev = 0.05; // of the time
 
-// Colours as the film has them, to what tev takes them for.
-Matrix3 toTev(const FilmSettings& film) { return rgb::rec709.fromXyz() * rgbSpace(film.space).toXyz(); }
-
-using Triple = std::array<std::span<float>, 3>;
-
-void convert(const Triple& rgb, const Matrix3& matrix) {
-    for (std::size_t i = 0; i < rgb[0].size(); ++i) {
-        const auto c = matrix.apply<Vec3d>(Vec3d{rgb[0][i], rgb[1][i], rgb[2][i]});
-        rgb[0][i] = static_cast<float>(c.x);
-        rgb[1][i] = static_cast<float>(c.y);
-        rgb[2][i] = static_cast<float>(c.z);
-    }
-}
-
-// Layers with R, G and B are colours of the film's space; with A beside them they are identifiers of a Cryptomatte.
-std::vector<std::size_t> colourLayers(const std::vector<std::string>& channels) {
-    std::vector<std::size_t> found;
-    const auto has = [&](const std::string& name) { return std::ranges::find(channels, name) != channels.end(); };
-    for (std::size_t i = 0; i < channels.size(); ++i)
-        if (channels[i].ends_with(".R")) {
-            const std::string layer = channels[i].substr(0, channels[i].size() - 1);
-            if (has(layer + "G") && has(layer + "B") && !has(layer + "A")) found.push_back(i);
-        }
-    return found;
-}
-
 std::vector<std::string> channelsOf(const TevFilm::How& how, const PixelFilm& film) {
-    std::vector<std::string> channels{"R", "G", "B"};
-    const PixelBounds all = film.bounds();
-    if (!film.layers()) return channels;
+    if (!film.layers()) return {"R", "G", "B"};
     FilmPicture picture(film, how.film, how.exposure, how.origin);
-    for (const NamedPlane& plane : picture.rows(all.y0, all.y0).layers.planes) channels.push_back(plane.name);
-    return channels;
+    return tevChannels(picture);
 }
 
 } // namespace
@@ -85,34 +56,14 @@ void TevFilm::finish(FilmPicture& picture) {
 }
 
 void TevFilm::send(FilmPicture& picture) {
-    const Matrix3 matrix = toTev(how_.film);
-    const std::vector<std::size_t> colours = colourLayers(channels_);
-    const auto width = static_cast<std::size_t>(bounds_.width());
     for (int y0 = bounds_.y0; y0 < bounds_.y1; y0 += kRowsAtOnce) {
-        const int y1 = std::min(y0 + kRowsAtOnce, bounds_.y1);
-        TevRows rows{y0 - bounds_.y0, y1 - bounds_.y0, channels_, {}};
-        const std::size_t first = static_cast<std::size_t>(rows.y0) * width;
-        const std::size_t count = static_cast<std::size_t>(y1 - y0) * width;
-        rows.planes.reserve(channels_.size() * count);
-        const auto add = [&](std::span<const float> values) {
-            rows.planes.insert(rows.planes.end(), values.begin(), values.end());
-        };
-        const LayerPlanes layers = picture.rows(y0, y1).layers; // first: the picture gets its last bits by it
-        for (const std::vector<float>* plane : {&picture.image.r, &picture.image.g, &picture.image.b})
-            add(std::span(*plane).subspan(first, count));
-        for (const NamedPlane& plane : layers.planes) add(plane.values);
-        if (rows.planes.size() != channels_.size() * count) return; // other layers than at first: none that tev knows
-        const auto channel = [&](std::size_t i) { return std::span(rows.planes).subspan(i * count, count); };
-        const auto triple = [&](std::size_t r) {
-            const std::string layer = channels_[r].substr(0, channels_[r].size() - 1);
-            const auto find = [&](const char* c) {
-                return static_cast<std::size_t>(std::ranges::find(channels_, layer + c) - channels_.begin());
-            };
-            return Triple{channel(r), channel(find("G")), channel(find("B"))};
-        };
-        convert(triple(0), matrix);
-        for (const std::size_t r : colours) convert(triple(r), matrix);
-        image_.show(std::move(rows));
+        auto rows = tevRows(picture, how_.film.space, channels_, y0, std::min(y0 + kRowsAtOnce, bounds_.y1));
+        if (!rows) return; // other layers than at first: none that tev knows
+        rows->y0 -= bounds_.y0;
+        rows->y1 -= bounds_.y0;
+        rows->x0 = 0; // the image in tev is what is rendered, not the frame
+        rows->x1 = bounds_.width();
+        image_.show(std::move(*rows));
     }
 }
 

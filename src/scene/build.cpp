@@ -138,6 +138,7 @@ void SceneBuilder::buildSettings() {
     if (context_.options.samples) built.render.samples = *context_.options.samples;
     if (context_.tree.frame) built.render.seed = seedOfFrame(built.render.seed, *context_.tree.frame);
     if (context_.options.seed) built.render.seed = *context_.options.seed;
+    if (context_.options.fps) built.render.fps = *context_.options.fps;
     if (context_.options.noise) built.render.noise = *context_.options.noise;
     if (context_.options.timeLimit) built.render.timeLimit = *context_.options.timeLimit;
     if (context_.options.textureCache) built.render.textureCache = *context_.options.textureCache;

@@ -29,7 +29,8 @@ struct BuildOptions {
     std::optional<double> timeLimit;    // s
     std::optional<double> textureCache; // MiB
     std::optional<bool> adaptive;
-    std::optional<int> pilot; // RenderSettings::pilot; else by work
+    std::optional<double> fps; // of an animation
+    std::optional<int> pilot;  // RenderSettings::pilot; else by work
     std::optional<Technique::Strategy> strategy;
     std::optional<Technique::Numbers> sampler;
     bool geometry = true;   // false: check only; no acceleration structure is built

@@ -171,13 +171,22 @@ class Socket {
 } // namespace
 
 struct TevImage::State {
-    State(const TevAddress& at, std::string called, int w, int h, std::vector<std::string> of)
-        : address(at), name(std::move(called)), width(w), height(h), channels(std::move(of)) {}
+    // Of the image, whose name stays.
+    struct Shape {
+        int width, height;
+        std::vector<std::string> channels;
+        bool operator==(const Shape&) const = default;
+    };
+    using ShapePointer = std::shared_ptr<const Shape>;
+
+    State(const TevAddress& at, std::string called, Shape of)
+        : address(at), name(std::move(called)), shape(std::make_shared<const Shape>(std::move(of))) {}
 
     void run();
     Socket connect(std::string& why) const;
     Socket tryAddress(const addrinfo& at, std::string& why) const;
-    bool greet(Socket&);
+    bool greet(Socket&, const Shape&);
+    void open(Socket&, std::unique_lock<std::mutex>&);
     bool send(Socket&, const tev::Packet&);
     bool send(Socket&, const TevRows&);
     std::shared_ptr<const TevRows> next() const;
@@ -186,19 +195,19 @@ struct TevImage::State {
 
     const TevAddress address;
     const std::string name;
-    const int width, height;
-    const std::vector<std::string> channels;
 
     std::mutex mutex; // of all below, but for the atomics
     std::condition_variable changed;
+    ShapePointer shape, told; // told: that of the image that tev has
     // The newest of each place, oldest first, with whether tev has them: a new connection gets all of them again.
     struct Shown {
         std::shared_ptr<const TevRows> rows;
         bool sent = false;
     };
     std::vector<Shown> shown;
-    std::string warning;
+    std::string warning, lack; // lack: why there is no connection
     bool warned = false;
+    bool closing = false;              // tev is to close the image in the end
     bool ending = false;               // no more rows will come
     bool ended = false;                // the thread is done
     std::atomic<bool> leave{false};    // now, whatever is left
@@ -268,13 +277,15 @@ bool TevImage::State::send(Socket& socket, const tev::Packet& packet) {
 }
 
 // An image of that name is there from an earlier render, or from before the connection broke.
-bool TevImage::State::greet(Socket& socket) {
-    return send(socket, tev::closeImage(name)) && send(socket, tev::createImage(true, name, width, height, channels));
+bool TevImage::State::greet(Socket& socket, const Shape& s) {
+    return send(socket, tev::closeImage(name)) &&
+           send(socket, tev::createImage(true, name, s.width, s.height, s.channels));
 }
 
 // In packets of some megabytes, of whole rows.
 bool TevImage::State::send(Socket& socket, const TevRows& rows) {
     if (socket.hungUp()) return false;
+    const int width = rows.x1 - rows.x0;
     const std::size_t stride = static_cast<std::size_t>(width), count = rows.channels.size();
     const int all = rows.y1 - rows.y0;
     const int step =
@@ -290,7 +301,8 @@ bool TevImage::State::send(Socket& socket, const TevRows& rows) {
             planes.insert(planes.end(), from,
                           from + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(lines) * stride));
         }
-        if (!send(socket, tev::updateImage(name, rows.channels, 0, rows.y0 + y, width, lines, planes))) return false;
+        if (!send(socket, tev::updateImage(name, rows.channels, rows.x0, rows.y0 + y, width, lines, planes)))
+            return false;
     }
     return true;
 }
@@ -306,6 +318,25 @@ void TevImage::State::mark(const std::shared_ptr<const TevRows>& rows) {
     if (found != shown.end()) found->sent = true; // else newer ones took their place
 }
 
+// Connects and tells tev of the image, or says why not.
+void TevImage::State::open(Socket& socket, std::unique_lock<std::mutex>& lock) {
+    const ShapePointer now = shape;
+    lock.unlock();
+    std::string reason;
+    socket = connect(reason);
+    if (socket.isOpen() && !greet(socket, *now)) {
+        reason = "it hung up";
+        socket.close();
+    }
+    lock.lock();
+    absent = !socket.isOpen();
+    told = now;
+    for (Shown& s : shown) s.sent = false;
+    lack = absent ? fmt::format("tev does not listen at {}: {}", address.text(), reason) : std::string();
+    if (absent && !warned) warning = lack;
+    warned |= absent;
+}
+
 void TevImage::State::run() {
     Socket socket;
     int brokenAtEnd = 0;
@@ -313,31 +344,29 @@ void TevImage::State::run() {
     while (!shallLeave()) {
         if (!socket.isOpen()) {
             if (ending && !next()) break;
-            lock.unlock();
-            std::string why;
-            socket = connect(why);
-            if (socket.isOpen() && !greet(socket)) {
-                why = "it hung up";
-                socket.close();
-            }
-            absent = !socket.isOpen();
-            lock.lock();
-            for (Shown& s : shown) s.sent = false;
+            open(socket, lock);
             if (socket.isOpen()) continue;
-            if (!warned) warning = fmt::format("tev does not listen at {}: {}", address.text(), why);
-            warned = true;
             if (ending) break;
             changed.wait_for(lock, kRetry, [&] { return ending; });
             continue;
         }
-        changed.wait(lock, [&] { return ending || next(); });
+        changed.wait(lock, [&] { return ending || next() || told != shape; });
+        const ShapePointer now = shape;
+        const bool anew = told != now; // before any rows of it
         const auto rows = next();
-        if (!rows) break;
+        const bool closes = !anew && !rows && closing;
+        if (!anew && !rows && !closes) break;
         lock.unlock();
-        const bool good = send(socket, *rows);
+        const bool good = anew     ? greet(socket, *now)
+                          : closes ? send(socket, tev::closeImage(name))
+                                   : send(socket, *rows);
         lock.lock();
+        if (closes) break;
         if (good) {
-            mark(rows);
+            if (anew)
+                told = now;
+            else
+                mark(rows);
             continue;
         }
         socket.close();
@@ -351,23 +380,47 @@ void TevImage::State::run() {
 
 TevImage::TevImage(const TevAddress& address, std::string name, int width, int height,
                    std::vector<std::string> channels)
-    : state_(std::make_shared<State>(address, std::move(name), width, height, std::move(channels))) {
+    : state_(std::make_shared<State>(address, std::move(name), State::Shape{width, height, std::move(channels)})) {
     std::thread([state = state_] { state->run(); }).detach();
 }
 
 TevImage::~TevImage() { finish(); }
 
+void TevImage::reshape(int width, int height, std::vector<std::string> channels) {
+    State& s = *state_;
+    State::Shape wanted{width, height, std::move(channels)};
+    const std::lock_guard lock(s.mutex);
+    if (s.ending || *s.shape == wanted) return;
+    s.shown.clear();
+    s.shape = std::make_shared<const State::Shape>(std::move(wanted));
+    s.changed.notify_all();
+}
+
 void TevImage::show(TevRows rows) {
     State& s = *state_;
-    ABBE_CHECK(rows.y0 >= 0 && rows.y0 < rows.y1 && rows.y1 <= s.height && !rows.channels.empty());
-    ABBE_CHECK(rows.planes.size() ==
-               rows.channels.size() * static_cast<std::size_t>(s.width) * static_cast<std::size_t>(rows.y1 - rows.y0));
     const std::lock_guard lock(s.mutex);
+    if (rows.x1 == 0) rows.x1 = s.shape->width;
+    ABBE_CHECK(rows.y0 >= 0 && rows.y0 < rows.y1 && rows.y1 <= s.shape->height && !rows.channels.empty());
+    ABBE_CHECK(rows.x0 >= 0 && rows.x0 < rows.x1 && rows.x1 <= s.shape->width);
+    ABBE_CHECK(rows.planes.size() == rows.channels.size() * static_cast<std::size_t>(rows.x1 - rows.x0) *
+                                         static_cast<std::size_t>(rows.y1 - rows.y0));
     if (s.ending) return;
+    // The newest one that shares a pixel: what is as it was need not be sent again.
+    const auto last = std::find_if(s.shown.rbegin(), s.shown.rend(), [&](const State::Shown& older) {
+        const TevRows& o = *older.rows;
+        return o.y0 < rows.y1 && rows.y0 < o.y1 && o.x0 < rows.x1 && rows.x0 < o.x1;
+    });
+    if (last != s.shown.rend()) {
+        const TevRows& o = *last->rows;
+        if (o.y0 == rows.y0 && o.y1 == rows.y1 && o.x0 == rows.x0 && o.x1 == rows.x1 && o.channels == rows.channels &&
+            std::memcmp(o.planes.data(), rows.planes.data(), o.planes.size() * sizeof(float)) == 0)
+            return;
+    }
     // Newer pixels stand for older ones that have no channels beside theirs.
     std::erase_if(s.shown, [&](const State::Shown& older) {
         const TevRows& o = *older.rows;
-        return o.y0 >= rows.y0 && o.y1 <= rows.y1 && o.channels.size() <= rows.channels.size();
+        return o.y0 >= rows.y0 && o.y1 <= rows.y1 && o.x0 >= rows.x0 && o.x1 <= rows.x1 &&
+               o.channels.size() <= rows.channels.size();
     });
     s.shown.push_back({std::make_shared<const TevRows>(std::move(rows))});
     s.changed.notify_all();
@@ -378,6 +431,20 @@ bool TevImage::wanted() const { return !state_->absent; }
 std::string TevImage::takeWarning() {
     const std::lock_guard lock(state_->mutex);
     return std::exchange(state_->warning, {});
+}
+
+std::string TevImage::absence() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->lack;
+}
+
+void TevImage::close() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->shown.clear();
+        state_->closing = true;
+    }
+    finish();
 }
 
 void TevImage::finish() {

@@ -21,7 +21,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds kQuiet{30};         // after a file was closed or got its name
 constexpr milliseconds kBeingWritten{300}; // after somebody wrote to a file that stays open
 constexpr milliseconds kLongest{1500};     // of all these pauses together
-constexpr milliseconds kLook{1000};        // between looks at files that nobody told of
 constexpr std::uint32_t kEvents = IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_CREATE | IN_MODIFY |
                                   IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 // Clocks of file systems go in steps of some milliseconds.
@@ -58,15 +57,16 @@ struct FileWatch::Pause {
         if (!begun) begun = now;
         until = std::min(*begun + kLongest, std::max(until.value_or(now), now + quiet));
     }
-    int milliseconds() const {
-        if (!until) return static_cast<int>(kLook.count());
+    int milliseconds(std::chrono::milliseconds look) const {
+        if (!until) return static_cast<int>(look.count());
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(*until - Steady::now());
         return static_cast<int>(std::max<std::int64_t>(0, left.count() + 1));
     }
     bool over() const { return until && Steady::now() >= *until; }
 };
 
-FileWatch::FileWatch(std::function<void()> changed) : changed_(std::move(changed)) {
+FileWatch::FileWatch(std::function<void()> changed, std::chrono::milliseconds look)
+    : changed_(std::move(changed)), look_(look) {
     events_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC); // without it files are looked at once a second
     wake_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     thread_ = std::thread([this] { run(); });
@@ -179,7 +179,7 @@ void FileWatch::run() {
     Pause pause;
     for (;;) {
         pollfd sources[2] = {{wake_, POLLIN, 0}, {events_, POLLIN, 0}};
-        ::poll(sources, 2, pause.milliseconds());
+        ::poll(sources, 2, pause.milliseconds(look_));
         std::uint64_t ignored = 0;
         static_cast<void>(::read(wake_, &ignored, sizeof ignored));
         {

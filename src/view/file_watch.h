@@ -19,8 +19,9 @@ namespace abbe {
 // quiet for some hundredths of a second; a file that is still being written to, when it was closed or rests for longer.
 class FileWatch {
   public:
-    // `changed` is called from a thread of the watch.
-    explicit FileWatch(std::function<void()> changed);
+    // `changed` is called from a thread of the watch. `look`: time between looks at files that nobody told of; of a day
+    // it leaves the system's events alone.
+    explicit FileWatch(std::function<void()> changed, std::chrono::milliseconds look = std::chrono::seconds(1));
     ~FileWatch();
     FileWatch(const FileWatch&) = delete;
     FileWatch& operator=(const FileWatch&) = delete;
@@ -48,6 +49,7 @@ class FileWatch {
     bool takeChanges();
 
     std::function<void()> changed_;
+    const std::chrono::milliseconds look_;
     int events_ = -1, wake_ = -1; // descriptors
     std::mutex mutex_;            // of what follows
     std::map<std::string, Mark> files_;

@@ -7,6 +7,7 @@
 #include "film/layer_planes.h"
 #include "pictures/film_picture.h"
 #include "pictures/picture_figures.h"
+#include "reports/render_warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -143,6 +144,7 @@ void LiveRender::keepPicture() {
 LiveReport LiveRender::report() const {
     const std::lock_guard lock(mutex_);
     LiveReport report = report_;
+    report.diagnostics.insert(report.diagnostics.end(), found_.begin(), found_.end());
     const bool failed = std::ranges::any_of(report.diagnostics, [](const auto& d) { return d.severity == "error"; });
     if (failed && report.status != LiveStatus::loading) report.status = LiveStatus::error;
     report.stale = failed && picture_ != nullptr;
@@ -232,7 +234,7 @@ void LiveRender::fail(const char* code, std::string message, std::string help) {
     {
         const std::lock_guard lock(mutex_);
         report_.status = LiveStatus::error;
-        report_.diagnostics.push_back({"error", code, {}, 0, 0, std::move(message), {}, std::move(help)});
+        found_.push_back({"error", code, {}, 0, 0, std::move(message), {}, std::move(help)});
     }
     changed_();
 }
@@ -267,6 +269,7 @@ void LiveRender::adopt(LoadOutcome& outcome) {
     {
         const std::lock_guard lock(mutex_);
         report_.diagnostics = std::move(outcome.diagnostics);
+        found_.clear(); // its places may be elsewhere now
         report_.reuse = outcome.reuse;
         report_.readSeconds = outcome.readSeconds;
         report_.buildSeconds = outcome.buildSeconds;
@@ -292,6 +295,7 @@ void LiveRender::begin() {
         const std::lock_guard lock(mutex_);
         pose = pose_;
         shown_ = false;
+        found_.clear();
         report_.region = region_;
         report_.width = shot_->film.width;
         report_.height = shot_->film.height;
@@ -302,7 +306,7 @@ void LiveRender::begin() {
         report_.goal = goal_.value_or(shot_->settings.samples);
     }
     moveCamera({});
-    meter(*shot_);
+    if (!lendStops(*shot_)) meter(*shot_);
     moveCamera(pose);
     cell_ = firstCell(shot_->film.crop);
     const std::lock_guard lock(mutex_);
@@ -356,6 +360,27 @@ void LiveRender::meter(LiveShot& shot) {
     if (const auto stops = meterExposure(scene, *shot.integrator, shot.settings.maxDepth, exposure.sensitivity))
         exposure.stops = *stops;
     shot.built.exposure = exposure.factor();
+    lastStops_ = exposure.stops;
+}
+
+// The stops of the scene as it was saved before: a first picture need not wait for paths that find those of its own.
+bool LiveRender::lendStops(LiveShot& shot) {
+    Exposure& exposure = shot.built.cameraExposure;
+    if (!exposure.automatic || metered_ || !lastStops_) return false;
+    exposure.stops = *lastStops_;
+    shot.built.exposure = exposure.factor();
+    return true;
+}
+
+// After the first picture.
+void LiveRender::meterLate() {
+    if (metered_ || !shot_->built.cameraExposure.automatic) return;
+    const std::optional<CameraPose> pose = shownMoved_ ? std::optional(shownPose_) : std::nullopt;
+    moveCamera({});
+    meter(*shot_);
+    moveCamera(pose);
+    const std::lock_guard lock(mutex_);
+    report_.stops = shot_->built.cameraExposure.stops;
 }
 
 // Throws MemoryLimitExceeded if a film and its pictures do not fit.
@@ -379,11 +404,14 @@ int LiveRender::firstCell(const PixelBounds& bounds) const {
 void LiveRender::beginStage() {
     std::optional<PixelBounds> region;
     std::optional<std::uint32_t> goal;
+    bool shown = false;
     {
         const std::lock_guard lock(mutex_);
         region = region_;
         goal = goal_;
+        shown = shown_;
     }
+    if (shown || cell_ == 1) meterLate();
     const bool rough = cell_ > 1;
     const PixelBounds bounds = roughBounds(region.value_or(shot_->film.crop), cell_);
     RenderSettings settings = shot_->settings;
@@ -433,7 +461,10 @@ void LiveRender::renderStage() {
                                   publish();
                                   letIn();
                               }};
-        control.framePreview = [this](const FramePreview&) { letIn(); };
+        control.framePreview = [this](const FramePreview& look) {
+            if (film_->cell == 1) warnOfPaths(look);
+            letIn();
+        };
         control.passEnded = [this] { passEnded(); };
         const RenderStatistics statistics =
             shot_->integrator->render(shot_->built.scene, film_->film, film_->settings, control);
@@ -445,6 +476,13 @@ void LiveRender::renderStage() {
     earlier_ = now();
     resting_.unlock();
     changed_();
+}
+
+// Before the first sample of the last stage.
+void LiveRender::warnOfPaths(const FramePreview& look) {
+    Diagnostics found;
+    warnOfEndlessPaths(look, shot_->built, film_->settings.samples, found);
+    tell(viewDiagnostics(found, shot_->loaded->sources));
 }
 
 void LiveRender::stageEnded(const RenderStatistics& statistics) {
@@ -461,13 +499,22 @@ void LiveRender::stageEnded(const RenderStatistics& statistics) {
         return;
     }
     finished_ = true;
-    Diagnostics found; // of files that could not be read to their ends
-    for (const auto& texture : shot_->built.scene.textures) texture->reportLookups(found);
-    const auto told = viewDiagnostics(found, shot_->loaded->sources);
+    std::vector<ViewDiagnostic> told;
+    if (const auto last = picture(); onEnd && last) {
+        RestingFilm resting{*shot_, *film_, shownPose_, shownMoved_};
+        told = onEnd(resting, last);
+    }
+    tell(std::move(told));
     const std::lock_guard lock(mutex_);
-    report_.diagnostics.insert(report_.diagnostics.end(), told.begin(), told.end());
     report_.status = LiveStatus::done;
     report_.left = 0;
+}
+
+// About the picture in hand, each once: a render that goes on to more samples ends again.
+void LiveRender::tell(std::vector<ViewDiagnostic> found) {
+    const std::lock_guard lock(mutex_);
+    for (ViewDiagnostic& d : found)
+        if (std::ranges::find(found_, d) == found_.end()) found_.push_back(std::move(d));
 }
 
 void LiveRender::passEnded() {

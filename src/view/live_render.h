@@ -67,7 +67,7 @@ struct LiveReport {
     LiveStatus status = LiveStatus::loading; // error: what was saved last cannot be rendered
     std::uint64_t saves = 0;                 // times that the scene was read
     bool stale = false;                      // the picture is of an older save, since this one has errors
-    std::vector<ViewDiagnostic> diagnostics;
+    std::vector<ViewDiagnostic> diagnostics; // of the scene, and of its render so far
     int width = 0, height = 0;
     std::optional<PixelBounds> region;
     std::uint64_t samples = 0, goal = 0; // per pixel
@@ -116,6 +116,9 @@ class LiveRender {
 
     // Called with each picture before anybody gets it, by the thread of the view, while its film rests.
     std::function<void(RestingFilm&, const std::shared_ptr<const LivePicture>&)> onPublish;
+    // Likewise with the last picture of a render that has come to its end. What it returns is told beside what the
+    // scene was told of, until another picture begins.
+    std::function<std::vector<ViewDiagnostic>(RestingFilm&, const std::shared_ptr<const LivePicture>&)> onEnd;
     // Called from the thread of the view when a scene was read: the files to be followed from now on.
     std::function<void(const LoadOutcome&)> onLoad;
     // Of all threads so far. Requires a film, which rests.
@@ -140,6 +143,8 @@ class LiveRender {
     void stageEnded(const RenderStatistics&);
     void placeCamera(int cell);
     void meter(LiveShot&);
+    bool lendStops(LiveShot&);
+    void meterLate();
     void requireRoom(const PixelBounds&, int replicates) const;
     void moveCamera(const std::optional<CameraPose>&);
     void publish();
@@ -147,6 +152,8 @@ class LiveRender {
     void letIn();
     void progress(const Progress&);
     void passEnded();
+    void warnOfPaths(const FramePreview&);
+    void tell(std::vector<ViewDiagnostic>);
     int firstCell(const PixelBounds&) const;
     bool isLastStage() const { return (film_ ? film_->cell : cell_) == 1; }
     double now() const { return earlier_ + run_.seconds(); } // s of rendering this picture
@@ -160,6 +167,7 @@ class LiveRender {
     std::condition_variable awake_;
     Orders orders_;
     LiveReport report_;
+    std::vector<ViewDiagnostic> found_; // about the picture in hand
     bool paused_ = false, rendering_ = false;
     bool shown_ = false; // something of what was begun last
     std::optional<CameraPose> pose_;
@@ -178,13 +186,14 @@ class LiveRender {
     std::unique_ptr<const Camera> movedCamera_; // null: the scene's own is where it was
     CameraPose shownPose_;
     bool shownMoved_ = false;
-    bool metered_ = false;       // the exposure of the shot
-    int cell_ = 8;               // of the next stage
-    bool finished_ = false;      // all stages
-    double secondsOfPixel_ = 0;  // of a sample of a pixel, from the first stage that was measured; 0: unknown
-    double earlier_ = 0;         // s that this picture was rendered for before run_
-    double nextPublication_ = 0; // s, as now()
-    Stopwatch run_, begun_;      // since the render went on; since the save or the move
+    bool metered_ = false;            // the exposure of the shot
+    std::optional<double> lastStops_; // that metering found last
+    int cell_ = 8;                    // of the next stage
+    bool finished_ = false;           // all stages
+    double secondsOfPixel_ = 0;       // of a sample of a pixel, from the first stage that was measured; 0: unknown
+    double earlier_ = 0;              // s that this picture was rendered for before run_
+    double nextPublication_ = 0;      // s, as now()
+    Stopwatch run_, begun_;           // since the render went on; since the save or the move
     std::uint64_t versions_ = 0;
     std::thread thread_;
 };

@@ -115,6 +115,7 @@ fs::path LiveScene::folder() const {
 
 void LiveScene::build(LoadOutcome& outcome, std::unique_ptr<LoadedScene>& loaded) {
     auto shot = std::make_shared<LiveShot>();
+    shot->number = readings_;
     Stopwatch watch;
     Diagnostics& diagnostics = loaded->diagnostics;
     shot->built = buildScene(loaded->tree, loaded->types, options_, diagnostics, &reuse_);
@@ -151,6 +152,7 @@ LoadOutcome LiveScene::load() {
     LoadOutcome outcome;
     outcome.begun = std::chrono::system_clock::now();
     outcome.files.push_back(input_.path);
+    ++readings_;
     const auto fail = [&](std::string code, std::string message, std::string help) {
         outcome.shot.reset();
         outcome.diagnostics.push_back(

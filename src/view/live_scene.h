@@ -9,6 +9,7 @@
 #include "scene/reuse.h"
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -22,6 +23,7 @@ struct ViewDiagnostic {
     std::string file;                   // empty: about no place
     std::uint32_t line = 0, column = 0; // from 1, in characters; 0: none
     std::string message, label, help;
+    bool operator==(const ViewDiagnostic&) const = default;
 };
 
 // By place, some hundreds at most.
@@ -30,6 +32,7 @@ std::vector<ViewDiagnostic> viewDiagnostics(const Diagnostics&, const SourceMap&
 // A scene as it was at one moment. Shared by all who look at it; only LiveRender changes its camera, frame and
 // exposure, between renders.
 struct LiveShot {
+    std::uint64_t number = 0; // of the readings, from 1
     std::unique_ptr<LoadedScene> loaded;
     BuiltScene built;
     std::unique_ptr<const Camera> ownCamera; // as the scene has it; that of `built` is for the film in hand
@@ -74,6 +77,7 @@ class LiveScene {
     SceneInput input_;
     BuildOptions options_;
     SceneReuse reuse_;
+    std::uint64_t readings_ = 0;
 };
 
 // The most light groups that a view makes of the lights of a scene without groups.

@@ -9,6 +9,17 @@ namespace abbe {
 ViewSession::ViewSession(ViewRequest request)
     : request_(std::move(request)), scene_(request_.input, request_.build), render_(scene_, [this] { changed(); }),
       pictures_(render_, request_.view), watch_([this] { render_.reload(); }) {
+    if (request_.tev) {
+        tev_ = std::make_unique<ViewTev>(*request_.tev, request_.input.path);
+        render_.onPublish = [this, shown = render_.onPublish](RestingFilm& resting, const auto& picture) {
+            shown(resting, picture);
+            tev_->show(resting, *picture, false);
+        };
+    }
+    render_.onEnd = [this](RestingFilm& resting, const auto& picture) {
+        if (tev_) tev_->show(resting, *picture, true);
+        return warningsOf(resting);
+    };
     render_.onLoad = [this](const LoadOutcome& outcome) { loaded(outcome); };
     render_.start();
 }
@@ -43,7 +54,12 @@ std::uint64_t ViewSession::changes() const {
 }
 
 std::uint64_t ViewSession::waitForChange(std::uint64_t seen, double seconds) {
+    const std::string absence = tevAbsence(); // tev tells nobody that it comes or goes
     std::unique_lock lock(mutex_);
+    if (absence_ != absence) {
+        absence_ = absence;
+        ++changes_;
+    }
     changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return changes_ != seen; });
     return changes_;
 }

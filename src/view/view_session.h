@@ -5,6 +5,7 @@
 #include "app/json.h"
 #include "view/file_watch.h"
 #include "view/view_pictures.h"
+#include "view/view_tev.h"
 
 #include <condition_variable>
 #include <functional>
@@ -21,15 +22,20 @@ struct ViewRequest {
     SceneInput input;
     BuildOptions build;
     ViewOptions view;
-    std::string commandLine; // for the headers of snapshots
-    int port = 0;            // 0: a free one
-    bool open = false;       // the page, in the browser of whoever runs the program
+    std::string commandLine;       // for the headers of snapshots
+    int port = 0;                  // 0: a free one
+    bool open = false;             // the page, in the browser of whoever runs the program
+    std::optional<TevAddress> tev; // where the picture is shown, too
 };
 
 struct ProbeQuery {
     int x = 0, y = 0;      // pixel of the frame
     bool spectrum = false; // takes samples of the pixel, some tenths of a second
 };
+
+// What to do when tev does not listen.
+inline constexpr const char* kTevHelp = "start tev, where it listens at port 14158, or write `--tev=HOST:PORT`; the "
+                                        "view goes on without it, and shows its picture there as soon as tev answers";
 
 class ViewSession {
   public:
@@ -52,11 +58,17 @@ class ViewSession {
     // JSON. The answer.
     Json order(std::string_view name, const std::string& body);
     static bool isOrder(std::string_view name);
+    // Why tev, which was asked for, does not have the picture at this time; empty: nothing is known to be in the way.
+    std::string tevAbsence() const { return tev_ ? tev_->absence() : std::string(); }
 
   private:
     struct Orders; // view_orders.cpp
     Json cameraState(const LiveReport&) const;
     Json sceneState() const;
+    Json denoisersState(std::string& missing) const;
+    std::vector<ViewDiagnostic> allDiagnostics(const LiveReport&) const;
+    std::string replayCommand() const;
+    std::vector<ViewDiagnostic> warningsOf(const RestingFilm&) const;
     Json snapshot();
     std::string nextSnapshot(std::uint64_t& number) const; // path without an extension
     std::vector<ImageAttribute> snapshotHeader(const RestingFilm&, const LiveReport&, double noise) const;
@@ -68,8 +80,16 @@ class ViewSession {
     LiveScene scene_;
     LiveRender render_;
     ViewPictures pictures_;
+    std::unique_ptr<ViewTev> tev_; // null: not asked for
+    std::string absence_;          // of tev, as it was told last
+    // Denoisers that can be used, and why others cannot: asked for once, and again after a save, since asking looks for
+    // libraries.
+    mutable std::mutex denoisersMutex_;
+    mutable std::uint64_t denoisersOf_ = ~std::uint64_t{0}; // number of saves
+    mutable Json denoisers_;
+    mutable std::string denoiserMissing_;
     std::string other_;                        // path as the page gave it
-    mutable std::mutex mutex_;                 // of `other_` and what follows
+    mutable std::mutex mutex_;                 // of `other_`, `absence_` and what follows
     std::vector<std::filesystem::path> known_; // files of the last scene without errors
     std::condition_variable changed_;
     std::uint64_t changes_ = 0;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
 
@@ -134,8 +135,9 @@ Json reuseJson(const LiveReport& r) {
 }
 
 // Those that can be used; `missing` says why others cannot.
-Json denoisersJson(std::string& missing) {
+Json askForDenoisers(std::string& missing) {
     Json list = Json::list();
+    missing.clear();
     for (const DenoiseMethod method : kViewDenoisers) {
         try {
             list.push(Json::object({{"name", std::string(name(method))}, {"version", std::string(version(method))}}));
@@ -169,6 +171,22 @@ Json ViewSession::sceneState() const {
     return Json::object({{"name", path.stem().string()}, {"path", request_.input.path}});
 }
 
+Json ViewSession::denoisersState(std::string& missing) const {
+    const std::uint64_t saves = render_.report().saves;
+    const std::lock_guard lock(denoisersMutex_);
+    if (std::exchange(denoisersOf_, saves) != saves) denoisers_ = askForDenoisers(denoiserMissing_);
+    missing = denoiserMissing_;
+    return denoisers_;
+}
+
+// Those of the scene and its render, and what keeps tev from having the picture.
+std::vector<ViewDiagnostic> ViewSession::allDiagnostics(const LiveReport& report) const {
+    std::vector<ViewDiagnostic> all = report.diagnostics;
+    if (std::string why = tevAbsence(); !why.empty())
+        all.push_back({"warning", "W0679", {}, 0, 0, std::move(why), {}, std::string(kTevHelp)});
+    return all;
+}
+
 Json ViewSession::state() const {
     const LiveReport r = render_.report();
     const auto picture = render_.picture();
@@ -182,7 +200,7 @@ Json ViewSession::state() const {
     std::vector<std::string> layers{"beauty"};
     layers.insert(layers.end(), r.layers.begin(), r.layers.end());
     std::string missing;
-    const Json denoisers = denoisersJson(missing);
+    const Json denoisers = denoisersState(missing);
     Json other;
     {
         const std::lock_guard lock(mutex_);
@@ -209,7 +227,7 @@ Json ViewSession::state() const {
          {"exposure", shot ? Json(r.stops) : Json()},
          {"denoisers", denoisers},
          {"denoiser_missing", missing.empty() ? Json() : Json(missing)},
-         {"diagnostics", diagnosticsJson(r.diagnostics, scene_.folder())},
+         {"diagnostics", diagnosticsJson(allDiagnostics(r), scene_.folder())},
          {"reuse", reuseJson(r)},
          {"other", other},
          {"saved", render_.saved() != nullptr}});

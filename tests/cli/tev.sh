@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `abbe render --tev`: what a viewer gets is what the image has, and no viewer can hold a render up or fail it.
+# `abbe render --tev` and `abbe view --tev`: what a viewer gets is what the image has, and no viewer can hold a render up or fail it.
 #   tev.sh PROGRAM JSON_LINES RECEIVER
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
@@ -37,6 +37,30 @@ same_pixels one.exr two.exr
 listen plain three.exr
 expect 0 plain.scene --crop 3,4,40,31 --samples 32 --quiet --tev="localhost:$port" -o three.exr
 saw "image three.exr 37x27"
+
+# A view: the bits of a render in the end, through an edit, until the image is closed.
+rm -f port.done
+expect 0 render layers.scene --size 96x64 --samples 64 --quiet -o view.exr
+listen view view.exr
+sed 's/samples [0-9]*/samples 1/' layers.scene >seen.scene
+"$program" view seen.scene --size 96x64 --samples 64 --tev="127.0.0.1:$port" >url 2>told &
+job=$!
+for _ in {1..600}; do [[ -s url ]] && break; sleep 0.1; done
+sleep 1
+cp layers.scene seen.new && mv seen.new seen.scene
+for _ in {1..600}; do [[ -e port.done ]] && break; sleep 0.1; done
+kill -INT "$job"
+ended_with 0
+saw "image seen.scene 96x64" "creates 1"
+is_empty told
+"$program" view plain.scene --samples 8 --tev="127.0.0.1:$port" >url 2>told & # nobody listens any longer
+job=$!
+for _ in {1..600}; do grep -q W0679 told && break; sleep 0.1; done
+kill -INT "$job"
+ended_with 0
+tells told W0679 "127.0.0.1:$port"
+[[ $(grep -c 'warning\[W0679' told) -eq 1 ]] || fault "the view says more than once that nobody listens"
+expect 2 view plain.scene --tev=host:0
 
 # Slow, late, and one that hangs up in between.
 listen slow slow.exr

@@ -1,6 +1,8 @@
 // Stands for tev beside a render:  tev_receiver PORT_FILE EXR HOW  writes its port to the file, takes what a render
 // sends, and then compares it with the render's image. HOW: plain; slow, a few kilobytes at a time; stuck, which takes
-// nothing; drop, which hangs up after the first packets; late, which begins to listen to what comes after a second.
+// nothing; drop, which hangs up after the first packets; late, which begins to listen to what comes after a second;
+// view, for `abbe view`: when nothing has come for a while it makes the file PORT_FILE.done, and in the end compares
+// what it had when the image was closed, as far as the file has it.
 // Prints what came, and ends with 1 for anything that tev would not understand or that is not in the image.
 #include "support/tev_receiver.h"
 
@@ -22,12 +24,15 @@ using namespace abbe;
 // The largest difference of a channel from the file's, relative to its largest value; colours as linear Rec. 709.
 class Comparison {
   public:
-    Comparison(const ExrPlanes& file, const ReceivedImage& image) : file_(file), image_(image) {
+    Comparison(const ExrPlanes& file, const ReceivedImage& image, bool someChannels)
+        : file_(file), image_(image), someChannels_(someChannels) {
         if (file.info.chromaticities) matrix_ = rgb::rec709.fromXyz() * file.info.chromaticities->space().toXyz();
     }
     double worst() {
         double most = 0;
-        for (const std::string& channel : image_.order) most = std::max(most, differenceOf(channel));
+        for (const std::string& channel : image_.order)
+            if (!someChannels_ || (file_.find(channel) && channel != "seconds.S")) // of another run
+                most = std::max(most, differenceOf(channel));
         return most;
     }
 
@@ -68,10 +73,21 @@ class Comparison {
 
     const ExrPlanes& file_;
     const ReceivedImage& image_;
+    const bool someChannels_;
     Matrix3 matrix_;
 };
 
-void receive(TevReceiver& receiver, const std::string& how) {
+void receiveView(TevReceiver& receiver, const std::string& done) {
+    for (bool told = false;;) {
+        if (!told && receiver.image.complete() && !receiver.waits(4000)) {
+            std::ofstream file(done);
+            told = true;
+        }
+        if (!receiver.take()) return;
+    }
+}
+
+void receive(TevReceiver& receiver, const std::string& how, const std::string& done) {
     if (how == "late") sleep(1);
     if (!receiver.accept(40000)) throw std::runtime_error("nobody came");
     if (how == "stuck") {
@@ -83,6 +99,7 @@ void receive(TevReceiver& receiver, const std::string& how) {
         receiver.hangUp();
         if (!receiver.accept(40000)) throw std::runtime_error("nobody came again");
     }
+    if (how == "view") return receiveView(receiver, done);
     while (how == "slow" ? receiver.take(8192, 5000) : receiver.take()) {
     }
 }
@@ -98,13 +115,15 @@ int main(int argc, char** argv) {
             file << receiver.port() << '\n';
         }
         std::filesystem::rename(std::string(argv[1]) + ".new", argv[1]);
-        receive(receiver, argv[3]);
-        if (!receiver.image.complete()) throw std::runtime_error("the image is not complete");
+        receive(receiver, argv[3], std::string(argv[1]) + ".done");
+        const bool view = std::string(argv[3]) == "view";
+        const ReceivedImage& image = view ? receiver.closed : receiver.image;
+        if (view && !receiver.image.order.empty()) throw std::runtime_error("the image was not closed");
+        if (!image.complete()) throw std::runtime_error("the image is not complete");
         const ExrPlanes file = readExrChannels(argv[2]);
-        const double worst = Comparison(file, receiver.image).worst();
-        fmt::print("image {} {}x{} channels {} creates {} updates {} looks {}\n", receiver.image.name,
-                   receiver.image.width, receiver.image.height, receiver.image.order.size(), receiver.creates,
-                   receiver.updates,
+        const double worst = Comparison(file, image, view).worst();
+        fmt::print("image {} {}x{} channels {} creates {} updates {} looks {}\n", image.name, image.width, image.height,
+                   image.order.size(), receiver.creates, receiver.updates,
                    std::count(receiver.channelsOfUpdates.begin(), receiver.channelsOfUpdates.end(), std::size_t{3}));
         if (!(worst < 2e-6)) throw std::runtime_error(fmt::format("a channel differs by {}", worst));
     } catch (const std::exception& e) {

@@ -40,4 +40,29 @@ job=$!
 sleep 1
 kill -TERM "$job"
 ended_with 0
+
+# --open gives the address to xdg-open as one word, in a process group that Ctrl-C does not reach; without one it goes on.
+mkdir -p bin
+cat >bin/xdg-open <<'END'
+#!/bin/sh
+[ "$(ps -o pgid= -p $$ | tr -d ' ')" = "$$" ] && apart=apart
+echo "$# $1 $apart" >opened.new
+mv opened.new opened
+END
+chmod +x bin/xdg-open
+rm url
+PATH=$PWD/bin:$PATH "$program" view room.scene --size 96x64 --open >url 2>told &
+job=$!
+for _ in {1..300}; do [[ -s opened ]] && break; sleep 0.1; done
+[[ $(cat opened 2>/dev/null) == "1 $(<url) apart" ]] || fault "opened: $(cat opened 2>/dev/null), not $(<url)"
+kill -INT "$job"
+ended_with 0
+rm bin/xdg-open url
+PATH=$PWD/bin "$program" view room.scene --size 96x64 --open >url 2>told &
+job=$!
+for _ in {1..300}; do [[ -s url ]] && break; sleep 0.1; done
+[[ -s url ]] || fault "no address without xdg-open"
+kill -INT "$job"
+ended_with 0
+is_empty told
 finish

@@ -34,21 +34,26 @@ struct ReceivedImage {
 // Throws std::runtime_error for whatever tev's protocol does not allow.
 class TevReceiver {
   public:
-    // Listens at a free port of 127.0.0.1 (or of ::1).
-    explicit TevReceiver(bool ipv6 = false) : listener_(::socket(ipv6 ? AF_INET6 : AF_INET, SOCK_STREAM, 0)) {
+    // Listens at a free port of 127.0.0.1 (or of ::1), or at this one.
+    explicit TevReceiver(bool ipv6 = false, std::uint16_t port = 0)
+        : listener_(::socket(ipv6 ? AF_INET6 : AF_INET, SOCK_STREAM, 0)) {
         sockaddr_storage at{};
         socklen_t size = 0;
         if (ipv6) {
             auto& a = reinterpret_cast<sockaddr_in6&>(at);
             a.sin6_family = AF_INET6;
             a.sin6_addr = in6addr_loopback;
+            a.sin6_port = htons(port);
             size = sizeof a;
         } else {
             auto& a = reinterpret_cast<sockaddr_in&>(at);
             a.sin_family = AF_INET;
             a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+            a.sin_port = htons(port);
             size = sizeof a;
         }
+        const int yes = 1;
+        setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
         if (bind(listener_, reinterpret_cast<sockaddr*>(&at), size) != 0 || listen(listener_, 4) != 0)
             throw std::runtime_error("cannot listen");
         getsockname(listener_, reinterpret_cast<sockaddr*>(&at), &size);
@@ -65,7 +70,7 @@ class TevReceiver {
     std::uint16_t port() const { return port_; }
     int creates = 0, closes = 0, updates = 0;
     std::vector<std::size_t> channelsOfUpdates;
-    ReceivedImage image;
+    ReceivedImage image, closed; // closed: the last one, as it was then
 
     // Waits for a connection; false if there is none in that time.
     bool accept(int milliseconds) {
@@ -77,6 +82,11 @@ class TevReceiver {
     void hangUp() {
         if (connection_ >= 0) close(connection_);
         connection_ = -1;
+    }
+    // Whether there is something to take within this time.
+    bool waits(int milliseconds) const {
+        pollfd wait{connection_, POLLIN, 0};
+        return poll(&wait, 1, milliseconds) > 0;
     }
     // The next packet; false when the sender has hung up between two. `chunk` bytes at a time, a `pause` after each.
     bool take(std::size_t chunk = 1 << 16, int pauseMicroseconds = 0) {
@@ -138,6 +148,7 @@ class TevReceiver {
         case 2:
             ++closes;
             text();
+            if (!image.order.empty()) closed = std::move(image);
             image = {};
             return;
         case 4:

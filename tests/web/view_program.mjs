@@ -96,6 +96,11 @@ export function programChecks(program, scene) {
             check("without a sample", (await state()).samples.done === done);
             await slide(0.5);
             check("weighed as before", await h.until(async () => apart(both, await h.looks()) < 1));
+            await h.press("d");
+            check("denoised", await h.until("document.getElementById('denoise').getAttribute('aria-pressed') === 'true'") && await h.until(async () => apart(both, await h.looks()) > 0, 60000), apart(both, await h.looks()));
+            check("but not another picture", apart(both, await h.looks()) < 5, apart(both, await h.looks()));
+            await h.press("d");
+            check("and as it was", await h.until(async () => apart(both, await h.looks()) === 0, 20000), apart(both, await h.looks()));
             await h.press("2");
             check("a layer", await h.until(async () => apart(both, await h.looks()) > 3));
             await h.press("1");

@@ -172,3 +172,69 @@ TEST_CASE("tev: when nobody listens that is said once, and nothing waits for it"
     TevImage nowhere({"no.such.host.invalid", 14158}, "x", 20, 10, kChannels);
     nowhere.finish(); // does not wait for name servers
 }
+
+TEST_CASE("tev: what did not change is not sent again, and a part of the columns can be") {
+    TevReceiver receiver;
+    std::thread sender([&] {
+        TevImage image({"127.0.0.1", receiver.port()}, "x", 37, 20, kChannels);
+        image.show(rowsOf(37, 0, 20));
+        while (receiver.updates < 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        for (int i = 0; i < 5; ++i) image.show(rowsOf(37, 0, 20));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        TevRows part{3, 5, {"R"}, {1, 2, 3, 4, 5, 6}, 10, 13};
+        image.show(part);
+        while (receiver.updates < 2) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        image.show(part);
+        image.finish();
+    });
+    REQUIRE(receiver.accept(5000));
+    while (receiver.take()) {
+    }
+    sender.join();
+    CHECK(receiver.updates == 2);
+    CHECK(receiver.image.values.at("R")[3 * 37 + 10] == 1);
+    CHECK(receiver.image.values.at("R")[4 * 37 + 12] == 6);
+    CHECK(receiver.image.values.at("R")[4 * 37 + 13] == 4 * 37 + 13);
+    CHECK(receiver.image.values.at("G")[3 * 37 + 10] == 1e4f + 3 * 37 + 10);
+}
+
+TEST_CASE("tev: an image of another size and other channels takes the place of the one before, and is closed") {
+    TevReceiver receiver;
+    int createsBefore = 0;
+    std::thread sender([&] {
+        TevImage image({"127.0.0.1", receiver.port()}, "x", 37, 20, kChannels);
+        image.show(rowsOf(37, 0, 20));
+        while (receiver.updates < 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        image.reshape(37, 20, kChannels); // as it is
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        createsBefore = receiver.creates;
+        image.reshape(2, 1, {"R", "G"});
+        image.show({0, 1, {"R", "G"}, {1, 2, 3, 4}});
+        while (receiver.updates < 2) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        CHECK(receiver.image.complete());
+        CHECK(receiver.image.width == 2);
+        CHECK(image.absence().empty());
+        image.close();
+    });
+    REQUIRE(receiver.accept(5000));
+    while (receiver.take()) {
+    }
+    sender.join();
+    CHECK(createsBefore == 1);
+    CHECK(receiver.creates == 2);
+    CHECK(receiver.closes == 3);
+    CHECK(receiver.image.order.empty()); // closed
+}
+
+TEST_CASE("tev: it says that nobody listens as long as that is so") {
+    std::uint16_t port = 0;
+    { port = TevReceiver().port(); }
+    TevImage image({"127.0.0.1", port}, "x", 37, 20, kChannels);
+    for (int i = 0; i < 500 && image.absence().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    CHECK(image.absence().find("127.0.0.1:" + std::to_string(port)) != std::string::npos);
+    CHECK(image.takeWarning() == image.absence());
+    CHECK(image.takeWarning().empty());
+    const double before = seconds();
+    image.close();
+    CHECK(seconds() - before < 3);
+}

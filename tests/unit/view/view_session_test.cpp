@@ -1,6 +1,5 @@
 // A view without its server: what is told and shown while its file is edited.
-#include "unit/io/temporary_folder.h"
-#include "view/view_session.h"
+#include "unit/view/viewed_scene.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -12,83 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-
-fs::path homeOf(const TemporaryFolder& folder) { return fs::path(folder / "x").parent_path(); }
-
-constexpr const char* kBall = R"(scene 1
-film { size 64 48 }
-render { samples 8 }
-camera { from 0 1 4; look-at 0 1 0; fov 40 deg; exposure 7 stops }
-light key quad { points { - -1 3 -1; - 1 3 -1; - 1 3 1; - -1 3 1 }; luminance 2000 nits; two-sided on }
-light sky sky { luminance 100 nits }
-material red diffuse { reflectance 0.8 }
-shape ball sphere { center 0 1 0; radius 0.7; material red }
-shape floor plane { material diffuse { reflectance 0.4 } }
-)";
-
-// A scene in a folder of its own, and what is shown of it.
-class Viewed {
-  public:
-    explicit Viewed(const std::string& text) {
-        save(text);
-        ViewRequest request;
-        request.input.path = path().string();
-        session = std::make_unique<ViewSession>(request);
-    }
-    fs::path path() const { return homeOf(folder) / "ball.scene"; }
-    // As editors do.
-    void save(const std::string& text) const {
-        std::ofstream(homeOf(folder) / "ball.tmp") << text;
-        fs::rename(homeOf(folder) / "ball.tmp", path());
-    }
-    // Saves and waits until that is what is told of.
-    bool shows(const std::string& text) {
-        const long before = saves();
-        save(text);
-        return settles(before);
-    }
-    bool settles(long before) const {
-        for (int i = 0; i < 2000; ++i) {
-            if (saves() > before && !has("\"status\":\"loading\"") && !has("\"status\":\"rendering\"")) return true;
-            std::this_thread::sleep_for(10ms);
-        }
-        MESSAGE(state());
-        return false;
-    }
-    long saves() const {
-        const std::string text = state(), mark = "\"save\":";
-        return std::stol(text.substr(text.find(mark) + mark.size()));
-    }
-    std::string state() const { return session->state().text(); }
-    bool has(const std::string& text) const { return state().find(text) != std::string::npos; }
-    // Waits some seconds for a text in the state.
-    bool comes(const std::string& text) const {
-        for (int i = 0; i < 2000; ++i) {
-            if (has(text)) return true;
-            std::this_thread::sleep_for(10ms);
-        }
-        MESSAGE(state());
-        return false;
-    }
-    // Mean of a component of the picture, 0 to 255.
-    double mean(std::size_t component, PictureQuery query = {}) const {
-        const auto shown = session->picture(query);
-        REQUIRE(shown);
-        double sum = 0;
-        for (std::size_t i = component; i < shown->rgba.size(); i += 4)
-            sum += static_cast<unsigned char>(shown->rgba[i]);
-        return sum / (static_cast<double>(shown->rgba.size()) / 4);
-    }
-
-    TemporaryFolder folder;
-    std::unique_ptr<ViewSession> session;
-};
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-}
 
 TEST_CASE("a view shows its scene, and another picture after a save") {
     Viewed v(kBall);
@@ -186,6 +108,98 @@ TEST_CASE("the camera moves, says its lines, and comes back") {
     CHECK(v.has("\"moved\":true")); // another material moves no camera
     v.session->order("camera", R"({"reset":true})");
     REQUIRE(v.comes("\"moved\":false"));
+}
+
+TEST_CASE("a parallel camera shows less when it comes nearer, and says its width") {
+    const std::string parallel = replaced(kBall, "camera { from 0 1 4; look-at 0 1 0; fov 40 deg;",
+                                          "camera orthographic { from 0 1 4; look-at 0 1 0; width 3;");
+    Viewed v(parallel);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    REQUIRE(v.has("\"type\":\"orthographic\""));
+    const double before = v.mean(0);
+    v.session->order("camera", R"({"dolly":0.5})");
+    REQUIRE(v.comes(R"("lines":"from 0 1 2\nlook-at 0 1 0\nwidth 1.5")"));
+    std::this_thread::sleep_for(100ms);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const double near = v.mean(0);
+    CHECK(std::abs(near - before) > 1);
+    REQUIRE(v.shows(replaced(replaced(parallel, "from 0 1 4", "from 0 1 2"), "width 3", "width 1.5")));
+    REQUIRE(v.comes("\"moved\":false"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.mean(0) == doctest::Approx(near).epsilon(0.02));
+    v.session->order("camera", R"({"orbit":[0.5,0]})");
+    REQUIRE(v.comes("\"moved\":true"));
+    CHECK(v.has("\"look_at\":[0.0,1.0,0.0]"));
+    v.session->order("camera", R"({"pan":[0.1,0]})");
+    REQUIRE(v.comes("\"moved\":true"));
+    CHECK_FALSE(v.has("\"look_at\":[0.0,1.0,0.0]"));
+}
+
+TEST_CASE("a spherical camera looks around where it stands") {
+    const std::string around = replaced(replaced(kBall, "camera { from 0 1 4; look-at 0 1 0; fov 40 deg;",
+                                                 "camera spherical { from 0 1 4; look-at 0 1 0;"),
+                                        "size 64 48", "size 64 32");
+    Viewed v(around);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    REQUIRE(v.has("\"type\":\"spherical\""));
+    const auto before = v.session->picture({})->rgba;
+    v.session->order("camera", R"({"orbit":[1.5,0]})");
+    REQUIRE(v.comes("\"moved\":true"));
+    CHECK(v.has("\"from\":[0.0,1.0,4.0]"));
+    CHECK_FALSE(v.has("\"look_at\":[0.0,1.0,0.0]"));
+    std::this_thread::sleep_for(100ms);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const auto turned = v.session->picture({})->rgba;
+    CHECK(turned != before);
+    // The lines in the file are this picture.
+    const std::string text = v.state(), mark = "\"lines\":\"";
+    std::string lines = text.substr(text.find(mark) + mark.size());
+    lines = replaced(lines.substr(0, lines.find('"')), "\\n", "; ");
+    REQUIRE(v.shows(replaced(around, "from 0 1 4; look-at 0 1 0", lines)));
+    REQUIRE(v.comes("\"moved\":false"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    double difference = 0;
+    const auto again = v.session->picture({})->rgba;
+    for (std::size_t i = 0; i < again.size(); ++i)
+        difference += std::abs(static_cast<unsigned char>(again[i]) - static_cast<unsigned char>(turned[i]));
+    CHECK(difference / static_cast<double>(again.size()) < 3);
+}
+
+TEST_CASE("the picture is denoised on demand, without being touched") {
+    Viewed v(kBall);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    REQUIRE(v.has("{\"name\":\"preview\","));
+    const auto plain = v.session->picture({})->rgba;
+    PictureQuery query;
+    query.denoise = DenoiseMethod::preview;
+    const auto denoised = v.session->picture(query)->rgba;
+    CHECK(denoised != plain);
+    CHECK(v.mean(1, query) == doctest::Approx(v.mean(1)).epsilon(0.05));
+    CHECK(v.session->picture({})->rgba == plain);
+    // Less varies from pixel to pixel.
+    const auto roughness = [](const std::vector<char>& rgba) {
+        double sum = 0;
+        for (std::size_t i = 4; i < rgba.size(); i += 4)
+            sum += std::abs(static_cast<unsigned char>(rgba[i]) - static_cast<unsigned char>(rgba[i - 4]));
+        return sum;
+    };
+    CHECK(roughness(denoised) < 0.8 * roughness(plain));
+}
+
+TEST_CASE("what is suspicious about a picture is told as a warning with its place, and goes with its cause") {
+    const std::string dark = replaced(kBall, "exposure 7 stops", "exposure -8 stops");
+    Viewed v(dark);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.comes("\"severity\":\"warning\",\"code\":\"W0644\",\"file\":\"ball.scene\",\"line\":4"));
+    CHECK(v.has("\"stale\":false"));
+    v.session->order("control", R"({"samples":16})"); // ends again: told once
+    REQUIRE(v.comes("\"samples\":{\"done\":16,\"goal\":16}"));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const std::string text = v.state();
+    CHECK(text.find("W0644") == text.rfind("W0644"));
+    REQUIRE(v.shows(kBall));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(v.has("\"diagnostics\":[]"));
 }
 
 TEST_CASE("a probe tells value, error, names and a spectrum") {
