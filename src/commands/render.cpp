@@ -21,6 +21,7 @@ Examples:
   abbe render room.scene --tev                         shows the picture in tev while it renders
   abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
   abbe render shot.scene --frames 1-240 -o shot.####.exr    an animation, frame after frame
+  abbe render shot.scene --frames 1-24 --contact-sheet sheet.png --clip clip.mp4    and all of it at a glance
 
 Ctrl-C writes the image and a checkpoint; a second one leaves at once.)";
 
@@ -78,6 +79,15 @@ void addPieces(Arguments& a, RenderOptions& o) {
 
 // What contradicts an animation.
 std::optional<ArgumentFault> frameContradiction(const RenderOptions& o) {
+    const std::pair<const char*, bool> ofFrames[] = {
+        {"--fps", o.build.fps.has_value()}, {"--contact-sheet", !o.sheet.empty()}, {"--clip", !o.clip.empty()}};
+    for (const auto& [name, given] : ofFrames) {
+        if (given && o.frames.empty())
+            return ArgumentFault{name, "it is for the frames of an animation; write `--frames 1-24`"};
+        if (given && name != std::string_view("--fps") && (o.pixel || o.part))
+            return ArgumentFault{name, fmt::format("{} makes no pictures of frames; leave one of them out",
+                                                   o.part ? "--part" : "--pixel")};
+    }
     if (o.frames.empty()) return std::nullopt;
     for (const std::string& pattern : {o.output, o.png.path})
         if (std::string fault = framePatternFault(pattern); !fault.empty())
@@ -97,18 +107,14 @@ void addFrames(Arguments& a, RenderOptions& o) {
         return fault;
     };
     a.value("--frames", "LIST", read, "Render these frames of an animation: 7, 1-240, 1-240x2, 1-10,20");
+    addRate(a, o.build);
+    a.value("--contact-sheet", "FILE", &o.sheet, "With --frames: a PNG with the pictures of all frames");
+    a.value("--clip", "FILE", &o.clip, "With --frames: a film of them (.mp4, .mov, .mkv), by ffmpeg");
     a.afterwards([&o] { return frameContradiction(o); });
 }
 
-void addTev(Arguments& a, RenderOptions& o) {
-    const auto read = [&o](const std::string& text) {
-        TevAddress address;
-        std::string fault = text == "." ? std::string() : readTevAddress(text, address);
-        if (fault.empty()) o.tev = address;
-        return fault;
-    };
-    a.value("--tev", "HOST:PORT", read, "Show the picture and its layers in tev while it renders; 127.0.0.1:14158")
-        .valueOptional = true;
+void addViewer(Arguments& a, RenderOptions& o) {
+    addTev(a, o.tev, "Show the picture and its layers in tev while it renders; 127.0.0.1:14158");
     a.afterwards([&o]() -> std::optional<ArgumentFault> {
         if (!o.tev || (!o.part && !o.pixel)) return std::nullopt;
         return ArgumentFault{"--tev", fmt::format("{} makes no picture that could be shown; leave one of them out",
@@ -132,7 +138,7 @@ void addArguments(Arguments& a, RenderOptions& o) {
     addView(a, o.view);
     a.read("--preview", "on|off", o.preview, "on or off", readSwitch,
            "A PNG of what there is so far, until the image is written");
-    addTev(a, o);
+    addViewer(a, o);
     addJson(a, "Progress as JSON lines on stdout");
     a.read("--progress", "TIME", o.progressEvery, "a time such as 5s", readTime,
            "With --json: a line of it that often, 0.25s");

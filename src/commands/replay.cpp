@@ -34,6 +34,7 @@ void addArguments(Arguments& a, ReplayOptions& o) {
     addDefines(a, o.render.input.defines, "A parameter of the scene; may be repeated");
     addLayers(a, o.render.input.layers);
     addMoment(a, o.render.input.frame);
+    addRate(a, b);
     addTechniques(a, b, "How light was found", "Where random numbers came from", "");
     addThreads(a);
     addJson(a);

@@ -254,6 +254,16 @@ void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindo
     picture = {inside.width(), inside.height(), std::move(rgb), picture.space};
 }
 
+std::vector<std::pair<std::string, std::string>> pngTexts(const DisplayView& display, double exposure) {
+    const OcioView& view = display.view();
+    return {{kSoftwareKey, kSoftwareName + versionNumber()},
+            {"Display", view.display()},
+            {"View", view.view()},
+            {"OCIO", view.config().name},
+            {"OCIO hash", view.config().hash},
+            {"Exposure", fmt::format("{:g} stops", exposure)}};
+}
+
 void writeDisplayPng(const std::string& path, DisplayPicture picture, const ViewOptions& options, int bits) {
     const DisplayView display(picture.space, options);
     display.apply(picture.rgb);
@@ -264,12 +274,7 @@ void writeDisplayPng(const std::string& path, DisplayPicture picture, const View
     png.rgb = picture.rgb;
     png.bits = bits;
     png.srgb = view.isSrgb();
-    png.texts = {{kSoftwareKey, kSoftwareName + versionNumber()},
-                 {"Display", view.display()},
-                 {"View", view.view()},
-                 {"OCIO", view.config().name},
-                 {"OCIO hash", view.config().hash},
-                 {"Exposure", fmt::format("{:g} stops", options.exposure)}};
+    png.texts = pngTexts(display, options.exposure);
     writePng(path, png);
 }
 

@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace abbe {
@@ -68,5 +69,7 @@ struct DisplayPicture {
 // Leaves the pixels within `display`, of those of `window`; all if there are none.
 void cutOut(DisplayPicture&, const PixelWindow& window, const PixelWindow& display);
 void writeDisplayPng(const std::string& path, DisplayPicture, const ViewOptions&, int bits);
+// What a PNG of this program tells of the view that made it, by keywords.
+std::vector<std::pair<std::string, std::string>> pngTexts(const DisplayView&, double exposure);
 
 } // namespace abbe

@@ -5,6 +5,7 @@
 #include "checkpoints/render_parts.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
+#include "render_run/frame_overview.h"
 #include "render_run/render_run.h"
 
 #include <algorithm>
@@ -50,28 +51,33 @@ namespace {
 
 class FrameRun {
   public:
-    FrameRun(const RenderOptions& options, const CommonOptions& common) : options_(options), common_(common) {}
+    FrameRun(const RenderOptions& options, const CommonOptions& common)
+        : options_(options), common_(common), overview_(options, common) {}
 
     ExitCode run() {
         const std::vector<int>& frames = options_.frames;
         std::set<std::string> told;
+        if (const ExitCode code = overview_.check(); code != ExitCode::done) return code;
         for (std::size_t i = 0; i < frames.size(); ++i) {
             const RenderOptions one = optionsOf({frames[i], i + 1, frames.size(), &told});
             if (one.checkpoint.resume && isThere(one)) continue;
             try {
                 checks_.forgetAll();
-                if (const ExitCode code = RenderRun(one, common_, &carry_).run(); code != ExitCode::done) {
+                RenderRun render(one, common_, &carry_);
+                if (const ExitCode code = render.run(); code != ExitCode::done) {
+                    overview_.fail();
                     end(frames[i], code);
                     return code;
                 }
+                if (!one.part) overview_.add(render.image());
             } catch (...) { // what went wrong is told by who catches it in the end
+                overview_.fail();
                 end(frames[i], ExitCode::system);
                 throw;
             }
             done_.push_back(frames[i]);
         }
-        end(std::nullopt, ExitCode::done);
-        return ExitCode::done;
+        return end(std::nullopt, ExitCode::done);
     }
 
   private:
@@ -101,6 +107,7 @@ class FrameRun {
         if (fingerprintOf(image) != frameFingerprint(one, {loaded.get(), &built, one.crop.value_or(film.crop)}))
             return false;
         skipped_.push_back(one.frame->number);
+        overview_.add(image);
         tellSkipped(one, image);
         return true;
     }
@@ -140,8 +147,9 @@ class FrameRun {
             common_.console.line(fmt::format("{}: number {} is in {}", one.frame->text(), one.frame->number, image));
     }
 
-    // Which frames are done; `failed` is the one that ended the run.
-    void end(std::optional<int> failed, ExitCode code) const {
+    // Which frames are done; `failed` is the one that ended the run. The code, or that of an overview that failed.
+    ExitCode end(std::optional<int> failed, ExitCode code) {
+        if (!overview_.end() && code == ExitCode::done) code = ExitCode::system;
         std::vector<int> there = done_;
         there.insert(there.end(), skipped_.begin(), skipped_.end());
         std::ranges::sort(there);
@@ -154,7 +162,7 @@ class FrameRun {
                                                {"skipped", static_cast<std::uint64_t>(skipped_.size())}})
                                      .text() +
                                  "\n");
-            return;
+            return code;
         }
         const std::string list = there.empty() ? "no frame is done" : "frames that are done: " + frameListText(there);
         if (failed)
@@ -162,10 +170,12 @@ class FrameRun {
         else if (!options_.quiet && options_.frames.size() > 1)
             common_.console.line(fmt::format("{} of {} frames rendered, {} were there", done_.size(),
                                              options_.frames.size(), skipped_.size()));
+        return code;
     }
 
     const RenderOptions& options_;
     const CommonOptions& common_;
+    FrameOverview overview_;
     RenderCarry carry_;               // from frame to frame
     SceneReuse checks_;               // likewise, of scenes without geometry; until something is rendered
     std::vector<int> done_, skipped_; // numbers of frames

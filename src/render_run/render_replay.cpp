@@ -19,6 +19,7 @@ std::string RenderRun::replayCommand() const {
     for (const std::string& variant : options_.input.layers.variants) add("--variant", variant);
     for (const std::string& set : options_.input.layers.sets) add("--set", set);
     if (options_.input.frame) command += fmt::format(" --frame {}", *options_.input.frame);
+    if (b.fps) add("--fps", fmt::format("{}", *b.fps));
     if (!b.camera.empty()) add("--camera", b.camera);
     if (b.size) add("--size", fmt::format("{}x{}", b.size->x, b.size->y));
     if (b.seed) add("--seed", std::to_string(*b.seed));

@@ -65,6 +65,9 @@ class RenderRun {
         return hasPicture_ ? finish(interrupt.signal()) : finish(interrupt.signal(), leaveFiles());
     }
 
+    // The file of the image, once run() has come to it.
+    const std::string& image() const { return summary_.image; }
+
   private:
     // Whether nothing is written, but one pixel or a few samples are looked at.
     bool alone() const { return options_.pixel || !options_.replay.empty(); }
