@@ -11,12 +11,13 @@ namespace abbe {
 GlossTable::GlossTable(double ior, float roughness) {
     const Gloss gloss(static_cast<float>(ior), roughness);
     constexpr int kSide = 48; // points in each dimension of the sampler's square: error below 1e-4
-    for (int i = 0; i < kNodes; ++i) {
+    parallelFor(kNodes, [&](std::size_t node) {
+        const int i = static_cast<int>(node);
         const double root = (gloss.smooth() ? i : std::max(i, 1)) / (kNodes - 1.0), mu = root * root;
-        float& albedo = albedo_[static_cast<std::size_t>(i)];
+        float& albedo = albedo_[node];
         if (gloss.smooth()) {
             albedo = fresnelDielectric(static_cast<float>(mu), gloss.ior_);
-            continue;
+            return;
         }
         const Vec3 wo(Vec3d{std::sqrt((1 - mu) * (1 + mu)), 0, mu});
         double sum = 0;
@@ -26,7 +27,7 @@ GlossTable::GlossTable(double ior, float roughness) {
             if (const auto wi = gloss.sample(wo, u)) sum += static_cast<double>(gloss.weight(wo, *wi));
         }
         albedo = static_cast<float>(sum / (kSide * kSide));
-    }
+    });
     constexpr int kCosines = 1000;
     double mean = 0;
     for (int i = 0; i < kCosines; ++i) {
@@ -40,13 +41,11 @@ GlossRange::GlossRange(double ior, const schema::TexturedNumber& roughness, Kept
     : ior_(static_cast<float>(ior)), roughness_(roughness, 0, 1) {
     if (std::abs(ior_ - 1) < 1e-6f) return;
     using Tables = std::vector<GlossTable>;
-    if (!textured()) {
-        tables_ = std::make_shared<const Tables>(1, GlossTable(ior, static_cast<float>(roughness.value)));
-        return;
-    }
     DigestWriter key("gloss");
     key.number(ior);
+    if (!textured()) key.number(roughness.value);
     tables_ = KeptTables::get<Tables>(kept, key.digest(), [&] {
+        if (!textured()) return std::make_shared<Tables>(1, GlossTable(ior, static_cast<float>(roughness.value)));
         auto tables = std::make_shared<Tables>(kRoughnesses, GlossTable(ior, 0));
         parallelFor(kRoughnesses - 1, [&](std::size_t i) {
             (*tables)[i + 1] = GlossTable(ior, static_cast<float>(i + 1) / (kRoughnesses - 1));

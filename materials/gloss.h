@@ -78,8 +78,7 @@ class Gloss {
 // them. Immutable, thread-safe.
 class GlossRange {
   public:
-    // Index relative to what is around it, > 0; roughness 0 … 1. Tables of a roughness that varies take a while, and
-    // depend on the index alone.
+    // Index relative to what is around it, > 0; roughness 0 … 1. Tables take a while.
     GlossRange(double ior, const schema::TexturedNumber& roughness, KeptTables* kept = nullptr);
 
     Gloss at(const SurfaceHit& hit) const { return of(roughness_.at(hit)); }

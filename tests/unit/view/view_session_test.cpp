@@ -28,6 +28,35 @@ TEST_CASE("a view shows its scene, and another picture after a save") {
     CHECK(v.mean(0, saved) == doctest::Approx(before).epsilon(0.01));
 }
 
+TEST_CASE("tables of a gloss are kept when something else changes") {
+    const std::string glossy = replaced(kBall, "material red diffuse { reflectance 0.8 }",
+                                        "material red layered { base diffuse { reflectance 0.8 }; roughness 0.12 }");
+    Viewed v(glossy);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    REQUIRE(v.shows(replaced(glossy, "reflectance 0.4", "reflectance 0.05")));
+    CHECK(v.has("\"kept\":\"geometry, tables\""));
+    REQUIRE(v.shows(replaced(glossy, "roughness 0.12", "roughness 0.3")));
+    CHECK(v.has("\"kept\":\"geometry\""));
+}
+
+TEST_CASE("an exposure that is found by itself is that of a render in the end") {
+    const std::string byItself = replaced(kBall, "exposure 7 stops", "exposure auto");
+    Viewed v(byItself);
+    REQUIRE(v.comes("\"status\":\"done\""));
+    const double bright = v.mean(1);
+    const auto stops = [&] {
+        const std::string text = v.state(), mark = "\"exposure\":";
+        return std::stod(text.substr(text.find(mark) + mark.size()));
+    };
+    const double before = stops();
+    // Four times the light, a quarter of the exposure: the first picture has the stops of the scene before it.
+    REQUIRE(
+        v.shows(replaced(replaced(byItself, "luminance 2000", "luminance 8000"), "luminance 100", "luminance 400")));
+    REQUIRE(v.comes("\"status\":\"done\""));
+    CHECK(stops() == doctest::Approx(before - 2).epsilon(0.02));
+    CHECK(v.mean(1) == doctest::Approx(bright).epsilon(0.03));
+}
+
 TEST_CASE("faults are told with their places, the last good picture stays, and the next save mends it") {
     Viewed v(kBall);
     REQUIRE(v.comes("\"status\":\"done\""));
