@@ -214,6 +214,11 @@ TEST_CASE("tev: an image of another size and other channels takes the place of t
         CHECK(receiver.image.complete());
         CHECK(receiver.image.width == 2);
         CHECK(image.absence().empty());
+        image.reshape(3, 1, {"R"}); // what was shown goes with its shape
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        image.show({0, 1, {"R"}, {5, 6, 7}});
+        while (receiver.updates < 3) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        CHECK(receiver.image.values.at("R")[2] == 7);
         image.close();
     });
     REQUIRE(receiver.accept(5000));
@@ -221,8 +226,8 @@ TEST_CASE("tev: an image of another size and other channels takes the place of t
     }
     sender.join();
     CHECK(createsBefore == 1);
-    CHECK(receiver.creates == 2);
-    CHECK(receiver.closes == 3);
+    CHECK(receiver.creates == 3);
+    CHECK(receiver.closes == 4);
     CHECK(receiver.image.order.empty()); // closed
 }
 

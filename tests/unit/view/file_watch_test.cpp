@@ -45,6 +45,14 @@ TEST_CASE("a file that is written, replaced, deleted and made again is told each
     put(file, "two");
     CHECK(told.more(0));
     int before = told.count;
+    const fs::path elsewhere = placeOf(folder) / "elsewhere"; // of which nobody tells: the new name alone is an event
+    fs::create_directory(elsewhere);
+    put(elsewhere / "a.new", "2 and a half");
+    CHECK(told.quiet(before));
+    fs::rename(elsewhere / "a.new", file);
+    CHECK(told.more(before));
+    CHECK(told.quiet(before + 1));
+    before = told.count;
     put(placeOf(folder) / "a.new", "three"); // as vim and others do
     fs::rename(placeOf(folder) / "a.new", file);
     CHECK(told.more(before));
