@@ -36,6 +36,7 @@ set(techniques caustics/shared caustics/light_tracing caustics/manifold caustics
 set(allowed_path_tracing ${below_techniques} guiding ${techniques})
 set(allowed_rendering ${allowed_path_tracing} path_tracing)
 set(allowed_scene ${allowed_rendering} rendering volumes geometry lights cameras film media materials textures io)
+set(allowed_scene_checks ${allowed_scene} scene)
 set(allowed_study ${allowed_scene} scene denoise)
 set(allowed_verify ${allowed_scene} scene)
 set(allowed_doctor ${allowed_scene} parser scene)
@@ -60,12 +61,12 @@ set(allowed_pages ${allowed_app} app)
 set(allowed_checkpoints ${allowed_app} app study)
 set(allowed_reports ${allowed_app} app pictures pages study verify)
 set(allowed_command_line ${allowed_app} app pictures tev)
-set(allowed_render_run ${allowed_reports} reports checkpoints tev)
+set(allowed_render_run ${allowed_reports} reports checkpoints scene_checks tev)
 set(allowed_farm ${allowed_app} app checkpoints study)
 set(allowed_view ${allowed_reports} reports denoise tev)
 set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor view language_server)
 set(folders base math spectrum tev denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
-            modules guiding transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
+            modules guiding transport light_sampling ${techniques} path_tracing rendering scene scene_checks study verify doctor
             packs ${exchange} app language_server pictures pages checkpoints reports command_line render_run farm view commands)
 
 # Libraries that only one folder may know, or two.

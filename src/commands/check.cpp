@@ -5,6 +5,7 @@
 #include "exchange/importer/importer.h"
 #include "io/file.h"
 #include "scene/build.h"
+#include "scene_checks/scene_checks.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -56,12 +57,23 @@ void addArguments(Arguments& a, CheckOptions& o) {
 
 namespace {
 
+// Only where the camera is inside of something opaque: whether it is dark there takes rays against everything.
+void checkDarkness(const LoadedScene& loaded, Diagnostics& diagnostics) {
+    Diagnostics again;
+    buildScene(loaded.tree, loaded.types, {}, again);
+    for (const Diagnostic& d : again.all())
+        if (d.code == "W0696") diagnostics.add(d);
+}
+
 std::unique_ptr<LoadedScene> checkScene(const SceneInput& input, bool textures = false) {
     auto loaded = loadScene(input);
     BuildOptions options;
     options.geometry = false;
     options.textures = textures;
-    if (loaded->readable) buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
+    if (!loaded->readable) return loaded;
+    const BuiltScene built = buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
+    if (checkWholeScene(built, loaded->tree, CheckDepth::surfaces, loaded->diagnostics).cameraInBody)
+        checkDarkness(*loaded, loaded->diagnostics);
     return loaded;
 }
 

@@ -11,6 +11,7 @@
 #include "reports/image_header.h"
 #include "reports/render_text.h"
 #include "reports/render_warnings.h"
+#include "scene_checks/scene_checks.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -27,6 +28,7 @@ ExitCode RenderRun::load() {
         const WorkScope work(Work::building);
         built_ = buildScene(loaded_->tree, loaded_->types, options_.build, loaded_->diagnostics,
                             carry_ ? &carry_->reuse : nullptr);
+        checkWholeScene(built_, loaded_->tree, CheckDepth::amounts, loaded_->diagnostics);
         const double seconds = watch_.lap();
         endPhase("building", seconds - built_.commitSeconds);
         endPhase("committing", built_.commitSeconds);

@@ -73,7 +73,7 @@ struct BuiltScene {
     Span cameraSpan;     // of the camera's definition
     double exposure = 1; // factor of the camera's exposure
     SceneFacts facts;
-    std::unordered_map<const void*, Span> declared; // where, of shapes and of media
+    std::unordered_map<const void*, Span> declared; // where, of shapes, lights and media
     std::vector<EffectUser> effectUsers;            // of what can be left out, be it so or not
     double commitSeconds = 0;                       // of the building, what the acceleration structure took
 };

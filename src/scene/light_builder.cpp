@@ -50,6 +50,7 @@ void LightBuilder::add(std::unique_ptr<Light> light, const Definition& d, Visibi
         context_.diagnostics.warning("W0740", d.span, "this light is dark; it is left out of next-event estimation");
     if (!checkPower(*light, d.span)) return;
     context_.built.scene.names[light.get()] = context_.nameOf(d);
+    context_.built.declared[light.get()] = d.nameSpan;
     if (const MediumEmission* glow = light->emission()) context_.built.scene.names[glow] = context_.nameOf(d);
     lights_.push_back(std::move(light));
     names_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
@@ -94,6 +95,7 @@ const SurfaceLight* LightBuilder::emitterOf(const LoadedShape& shape, const Shap
     const SurfaceLight* const kept = light.get();
     lights_.push_back(std::move(light));
     context_.built.scene.names[kept] = context_.nameOf(d);
+    context_.built.declared[kept] = d.nameSpan;
     return kept;
 }
 

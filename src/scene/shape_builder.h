@@ -1,6 +1,7 @@
 // Shapes as their definitions state them, before it is known where they stand.
 #pragma once
 
+#include "geometry/open_edges.h"
 #include "geometry/shape_params.h"
 #include "lights/amount.h"
 #include "math/mesh_data.h"
@@ -48,22 +49,6 @@ template <typename P> schema::FieldInfo keysField(std::vector<schema::FieldInfo>
         .example("at \"1/48\" s { points { - 0 0 0; - 1 0 0; - 1 1 0.2 } }")
         .block(std::move(block));
 }
-
-// Whether a surface made of faces is closed, as it must be to hold a medium.
-
-struct OpenEdges {
-    std::uint64_t open = 0; // edges of a single face
-    std::uint64_t turned =
-        0; // edges of several faces that do not lie on its two sides in turn: one faces the other way
-
-    bool closed() const { return open + turned == 0; }
-};
-
-// Vertices in the same place count as one, whatever their normals and texture coordinates. Faces without an area, which
-// collapse to an edge or a point, have no part in it.
-OpenEdges openEdges(const MeshData&);
-// Holes are left out.
-OpenEdges openEdges(const SubdivisionCage&);
 
 class CameraBuilder;
 
