@@ -221,7 +221,7 @@ std::vector<schema::FieldInfo> absorptionFields() {
             .byDefault("1")
             .synonyms({"coat_thickness"})
             .doc("Factor on the thickness, for absorption or tint: a texture lets lacquer pool and wear off.")
-            .example("thickness-scale ramp { input noise { scale 5 cm }; stop 0.4 0.2; stop 0.6 2 }"),
+            .example("thickness-scale ramp { input noise { scale 5 cm }; stop 0.4 0.2; stop 0.6 1 }"),
     };
 }
 

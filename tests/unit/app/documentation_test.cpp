@@ -1,26 +1,17 @@
 // Every snippet of scene language in the documentation is what the program accepts. How snippets are marked is in
 // docs/testing.md.
-#include "app/load.h"
-#include "base/diagnostic_format.h"
-#include "scene/build.h"
+#include "snippet_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <doctest/doctest.h>
-#include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
-#include <map>
-#include <set>
 #include <sstream>
-#include <unistd.h>
 
 using namespace abbe;
+using namespace abbe::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-const fs::path kSource = ABBE_SOURCE_DIR;
 
 struct DocumentedSnippet {
     std::string page;
@@ -82,7 +73,7 @@ std::vector<DocumentedSnippet> snippetsOf(const fs::path& page) {
             continue;
         }
         close();
-        open = {fs::relative(page, kSource).string(), number, "", "", false, false};
+        open = {fs::relative(page, kSourceFolder).string(), number, "", "", false, false};
         if (fence) {
             const std::string mark = line.substr(indent + 3);
             open.marked = mark == "kdl" || mark.starts_with("kdl ");
@@ -100,9 +91,9 @@ std::vector<DocumentedSnippet> snippetsOf(const fs::path& page) {
 }
 
 std::vector<DocumentedSnippet> allSnippets() {
-    std::vector<fs::path> pages = {kSource / "README.md"};
+    std::vector<fs::path> pages = {kSourceFolder / "README.md"};
     for (const char* folder : {"docs", "scenes"})
-        for (const auto& entry : fs::recursive_directory_iterator(kSource / folder))
+        for (const auto& entry : fs::recursive_directory_iterator(kSourceFolder / folder))
             if (entry.path().extension() == ".md") pages.push_back(entry.path());
     std::ranges::sort(pages);
     std::vector<DocumentedSnippet> all;
@@ -111,44 +102,6 @@ std::vector<DocumentedSnippet> allSnippets() {
     return all;
 }
 
-// What a snippet names without defining it: a definition by name (tests/snippets/names.scene) or a file by its ending.
-class StandIns {
-  public:
-    StandIns() {
-        std::ifstream file(kSource / "tests/snippets/names.scene");
-        for (std::string line; std::getline(file, line);) {
-            std::istringstream words(line);
-            std::string kind, name;
-            words >> kind >> name;
-            if (schema::findKind(kind)) definitions_[name] = line;
-        }
-        REQUIRE(definitions_.size() > 3);
-    }
-    // Adds to the text or the folder what the error misses; false if it is another error.
-    bool supply(const Diagnostic& d, const fs::path& folder, std::string& text) {
-        if (d.code == "E0601") return text += "\ncamera { from 0 1 4; look-at 0 0.5 0 }", true;
-        if (d.code == "E0610") return text += "\nlight sky { luminance 1000 nits }", true;
-        const std::size_t first = d.message.find('`') + 1, last = d.message.rfind('`');
-        const std::string name = first < last ? d.message.substr(first, last - first) : "";
-        const bool missing = d.code == "E0202" || d.code == "E0632" || d.code == "E0655";
-        if (missing && definitions_.contains(name)) return text += "\n" + definitions_[name], true;
-        if (d.code != "E0401") return false;
-        std::string written = name;
-        if (const std::size_t tile = written.find("<UDIM>"); tile != std::string::npos)
-            written.replace(tile, 6, "1001");
-        const fs::path own = kSource / "tests/snippets" / fs::path(written).filename();
-        const fs::path model =
-            fs::exists(own) ? own : kSource / "tests/snippets" / ("any" + fs::path(written).extension().string());
-        if (!fs::exists(model) || fs::exists(folder / written)) return false;
-        fs::create_directories((folder / written).parent_path());
-        fs::copy_file(model, folder / written);
-        return true;
-    }
-
-  private:
-    std::map<std::string, std::string> definitions_;
-};
-
 // The text as a scene of its own: of a small picture, as surfaces are diced by its pixels.
 std::string wholeText(const DocumentedSnippet& s) {
     std::string text = s.text;
@@ -156,46 +109,6 @@ std::string wholeText(const DocumentedSnippet& s) {
     if (text.find("film") == std::string::npos) text += "\nfilm { size 64 36 }\n";
     return text.find("scene 1") == std::string::npos ? "scene 1\n" + text : text;
 }
-
-// Of what the program says of the snippet: errors and warnings, but that something is never used.
-std::vector<Diagnostic> complaints(const Diagnostics& diagnostics) {
-    std::vector<Diagnostic> found;
-    for (const Diagnostic& d : diagnostics.all())
-        if (d.code != "W0201" && d.code != "W0205") found.push_back(d);
-    return found;
-}
-
-struct Verdict {
-    std::string codes, report;
-};
-
-Verdict check(const DocumentedSnippet& snippet, const fs::path& folder, StandIns& standIns) {
-    std::string text = wholeText(snippet);
-    for (int round = 0;; ++round) {
-        std::ofstream(folder / "snippet.scene") << text;
-        const auto loaded = loadScene({(folder / "snippet.scene").string(), {}});
-        const auto supplied = [&] {
-            bool any = false;
-            for (const Diagnostic& d : complaints(loaded->diagnostics))
-                any = any || (round < 20 && standIns.supply(d, folder, text));
-            return any;
-        };
-        if (supplied()) continue; // before the scene is built in vain
-        BuildOptions options;
-        options.geometry = false;
-        buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
-        if (supplied()) continue;
-        std::string codes;
-        for (const Diagnostic& d : complaints(loaded->diagnostics)) codes += (codes.empty() ? "" : " ") + d.code;
-        return {codes, formatHuman(loaded->diagnostics, loaded->sources)};
-    }
-}
-
-struct SnippetFolder {
-    fs::path path = fs::temp_directory_path() / fmt::format("abbe-snippets-{}", getpid());
-    SnippetFolder() { fs::create_directories(path); }
-    ~SnippetFolder() { fs::remove_all(path); }
-};
 
 } // namespace
 
@@ -212,9 +125,11 @@ TEST_CASE("snippets of scene language are accepted, or wrong in the way they are
         if (!s.marked) continue;
         ++count;
         const SnippetFolder folder;
-        const Verdict verdict = check(s, folder.path, standIns);
+        const SnippetVerdict verdict = checkSnippet(wholeText(s), folder.path, standIns);
         const std::string expected = s.mark.starts_with("wrong ") ? s.mark.substr(6) : "";
         CHECK_MESSAGE(verdict.codes == expected, s.page << ":" << s.line << "\n" << wholeText(s) << verdict.report);
+        if (!expected.starts_with('E'))
+            CHECK_MESSAGE(verdict.rendered, s.page << ":" << s.line << " does not render\n" << verdict.report);
     }
     CHECK(count >= 40);
 }
