@@ -539,8 +539,6 @@ std::string withEdition(std::string_view text) {
 
 namespace {
 
-using Record = schema::Document::NodeRecord;
-
 bool sameNumber(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 bool sameValue(const schema::Value& a, const schema::Value& b) {
@@ -548,35 +546,35 @@ bool sameValue(const schema::Value& a, const schema::Value& b) {
     return a.kind == b.kind && a.text == b.text && a.boolean == b.boolean;
 }
 
+std::vector<double> allOf(const schema::PackedNumbers& numbers) {
+    std::vector<double> all;
+    all.reserve(numbers.size());
+    for (const double number : numbers) all.push_back(number);
+    return all;
+}
+
 // Rows of numbers may be packed in one of them and not in the other, by what stands between the numbers.
-bool sameValues(const schema::Document& da, const Record& a, const schema::Document& db, const Record& b) {
-    const std::uint32_t count = a.valueCount + a.numberCount;
-    if (count != b.valueCount + b.numberCount) return false;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const bool packedA = i >= a.valueCount, packedB = i >= b.valueCount;
-        const auto number = [](const schema::Document& d, const Record& r, std::uint32_t at) {
-            return d.numbers[r.firstNumber + at - r.valueCount];
-        };
-        if (packedA && packedB) {
-            if (!sameNumber(number(da, a, i), number(db, b, i))) return false;
-        } else if (packedA || packedB) {
-            const schema::Value& value = packedA ? db.values[b.firstValue + i] : da.values[a.firstValue + i];
-            const double other = packedA ? number(da, a, i) : number(db, b, i);
-            if (value.kind != schema::ValueKind::number || !sameNumber(value.number, other)) return false;
-        } else if (!sameValue(da.values[a.firstValue + i], db.values[b.firstValue + i])) {
-            return false;
-        }
-    }
+bool sameValues(const schema::Node& a, const schema::Node& b) {
+    const std::size_t count = a.valueCount();
+    if (count != b.valueCount()) return false;
+    if (a.allNumbers() && b.allNumbers()) return std::ranges::equal(allOf(a.numbers()), allOf(b.numbers()), sameNumber);
+    for (std::size_t i = 0; i < count; ++i)
+        if (!sameValue(a.value(i), b.value(i))) return false;
     return true;
 }
 
-bool sameKeys(const schema::Document& da, const Record& a, const schema::Document& db, const Record& b) {
-    if (a.keyCount != b.keyCount) return false;
-    for (std::uint32_t i = 0; i < a.keyCount; ++i) {
-        const schema::Key &ka = da.keys[a.firstKey + i], &kb = db.keys[b.firstKey + i];
-        if (ka.name != kb.name || !sameValue(ka.value, kb.value)) return false;
+bool sameKey(const schema::Key& a, const schema::Key& b) { return a.name == b.name && sameValue(a.value, b.value); }
+
+// As deep as the reader of a text goes.
+bool sameNodes(const schema::NodeRange& a, const schema::NodeRange& b) {
+    auto p = a.begin(), q = b.begin();
+    for (; p != a.end() && q != b.end(); ++p, ++q) {
+        const schema::Node m = *p, n = *q;
+        if (m.name() != n.name() || m.hasBlock() != n.hasBlock() || !sameValues(m, n) ||
+            !std::ranges::equal(m.keys(), n.keys(), sameKey) || !sameNodes(m.children(), n.children()))
+            return false;
     }
-    return true;
+    return p == a.end() && q == b.end();
 }
 
 } // namespace
@@ -585,12 +583,7 @@ bool sameMeaning(const schema::Document& a, const schema::Document& b) {
     const auto sameParameter = [](const auto& p, const auto& q) {
         return p.name == q.name && p.doc == q.doc && std::ranges::equal(p.written, q.written, sameValue);
     };
-    const auto sameNode = [&](const Record& p, const Record& q) {
-        return p.name == q.name && p.firstChild == q.firstChild && p.nextSibling == q.nextSibling &&
-               p.hasBlock == q.hasBlock && sameValues(a, p, b, q) && sameKeys(a, p, b, q);
-    };
-    return std::ranges::equal(a.parameters, b.parameters, sameParameter) &&
-           std::ranges::equal(a.nodes, b.nodes, sameNode);
+    return std::ranges::equal(a.parameters, b.parameters, sameParameter) && sameNodes(a.roots(), b.roots());
 }
 
 } // namespace abbe

@@ -3,34 +3,14 @@
 #include "parser/characters.h"
 #include "schema/unit.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <string>
 
 namespace abbe::parser {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Whether a decimal that does not fit is too small rather than too large: the power of ten of its first digit other
-// than zero decides.
-bool isTiny(std::string_view text) {
-    const std::size_t exponentAt = std::min(text.find_first_of("eE"), text.size());
-    const std::string_view mantissa = text.substr(0, exponentAt);
-    const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-    const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
-    std::int64_t power = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
-    std::int64_t exponent = 0;
-    for (const char c : text.substr(exponentAt))
-        if (isDigit(c) && exponent < 1'000'000'000'000) exponent = 10 * exponent + (c - '0');
-    const bool down = exponentAt + 1 < text.size() && text[exponentAt + 1] == '-';
-    power += down ? -exponent : exponent;
-    return power < 0;
-}
 
 int digitValue(char c) {
     if (isDigit(c)) return c - '0';
@@ -83,14 +63,6 @@ bool isDecimalForm(std::string_view text) {
 }
 
 } // namespace
-
-double convertDecimal(const char* p, const char* end) {
-    double value = 0;
-    const auto result = std::from_chars(p, end, value);
-    if (result.ec == std::errc::result_out_of_range)
-        return isTiny({p, static_cast<std::size_t>(end - p)}) ? 0 : kInfinity;
-    return value;
-}
 
 NumberResult parseNumber(std::string_view text) {
     const bool negative = text.starts_with('-');

@@ -62,23 +62,76 @@ void TreeReader::readEntries(const OpenNode& open) {
     finish(open);
 }
 
+// Past the plain decimal number at `p` if it is one alone that a double can hold; else null.
+const char* TreeReader::packedNumberEnd(const char* p) {
+    const char* end = skipDecimal(p);
+    if (end == nullptr) { // digits and exponent may be too much
+        double number;
+        end = scanDecimal(p, number);
+        if (!std::isfinite(number)) return nullptr;
+    }
+    return has(*end, kValueEnd) ? end : nullptr;
+}
+
 // The fast path: white space, a plain decimal number, and white space or the node's end behind it.
 bool TreeReader::readNumber(Record& node) {
     const char* p = at_;
     while (*p == ' ' || *p == '\t') ++p;
-    if (p == entryEnd_ || !(isDigit(*p) || ((*p == '-' || *p == '+') && isDigit(p[1])))) return false;
-    double number;
-    const char* const end = scanDecimal(p, number);
-    if (!has(*end, kValueEnd) || !std::isfinite(number)) return false;
+    if (p == entryEnd_ || !schema::startsDecimal(p)) return false;
+    const char* const end = packedNumberEnd(p);
+    if (end == nullptr) return false;
     if (node.numberCount++ == 0) {
-        node.firstNumber = static_cast<std::uint32_t>(document_.numbers.size());
+        node.firstNumber = static_cast<std::uint32_t>(document_.packedNumbers);
         node.packedBegin = text_.offset(p);
     }
-    if (document_.numbers.size() % Document::markStep == 0) document_.marks.push_back(text_.offset(p));
-    document_.numbers.push_back(number);
+    if (document_.packedNumbers++ % Document::markStep == 0) document_.marks.push_back(text_.offset(p));
     node.headEnd = text_.offset(end);
     at_ = entryEnd_ = end;
     return true;
+}
+
+// At the `{` of a node: whether its block holds nothing but rows of plain numbers, with line ends and line comments.
+// Then they are not read: at_ is at the `}`. Long rows and whatever is odd are left to the reader of nodes.
+bool TreeReader::readPackedRows(Record& node) {
+    constexpr int kLongest = 64; // numbers; each is searched for from the beginning of its row
+    const char* first = nullptr;
+    std::uint32_t rows = 0;
+    for (const char* p = at_ + 1;; ++rows) {
+        p = skipBetweenRows(p);
+        if (*p == '}' && rows > 0) {
+            node.packedRows = true;
+            node.firstNumber = rows;
+            node.packedBegin = text_.offset(first);
+            at_ = p;
+            return true;
+        }
+        if (*p != '-' || (p[1] != ' ' && p[1] != '\t')) return false;
+        if (rows == 0) first = p;
+        int count = 0;
+        for (++p;; ++count) {
+            while (*p == ' ' || *p == '\t') ++p;
+            if (!schema::startsDecimal(p)) break;
+            p = packedNumberEnd(p);
+            if (p == nullptr || count == kLongest) return false;
+        }
+        if (*p == ';')
+            ++p;
+        else if (*p != '\n' && *p != '\r' && *p != '}' && !(p[0] == '/' && p[1] == '/'))
+            return false;
+        if (count == 0) return false;
+    }
+}
+
+// Past white space, line ends and line comments of plain ASCII: wide characters may end a line.
+const char* TreeReader::skipBetweenRows(const char* p) {
+    for (;;) {
+        while (*p == ' ' || *p == '\t' || *p == '\n' || *p == '\r') ++p;
+        if (p[0] != '/' || p[1] != '/') return p;
+        const char* end = p;
+        while (*end >= ' ' || *end == '\t') ++end; // bytes above 127 are negative
+        if (*end != '\n' && *end != '\r') return p;
+        p = end;
+    }
 }
 
 // One argument or key. False at the end of the node.

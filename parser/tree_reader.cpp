@@ -16,7 +16,7 @@ using schema::Document;
 TreeReader::TreeReader(SyntaxErrors& errors, Document& document, std::uint32_t maxDepth,
                        std::span<const ImpliedBrace> implied)
     : errors_(errors), document_(document), scanner_(errors, document), text_(errors.text()), maxDepth_(maxDepth),
-      implied_(implied), at_(text_.begin), entryEnd_(text_.begin) {}
+      implied_(implied), plannedBraces_(!implied.empty()), at_(text_.begin), entryEnd_(text_.begin) {}
 
 void TreeReader::read() {
     if (std::string_view(text_.begin, text_.end).starts_with("\xef\xbb\xbf")) at_ += 3;
@@ -61,19 +61,18 @@ void TreeReader::reserve() {
     for (; p < text_.end; ++p) count += ends(*p);
     document_.nodes.reserve(count);
     document_.values.reserve(count);
-    document_.numbers.reserve(static_cast<std::size_t>(text_.end - text_.begin) / 8);
 }
 
 TreeReader::Sizes TreeReader::sizes() const {
-    return {document_.nodes.size(), document_.values.size(), document_.numbers.size(), document_.keys.size(),
+    return {document_.nodes.size(), document_.values.size(), document_.packedNumbers, document_.keys.size(),
             uses_.size()};
 }
 
 void TreeReader::rollBack(const Sizes& s) {
     document_.nodes.resize(s.nodes);
     document_.values.resize(s.values);
-    document_.numbers.resize(s.numbers);
-    document_.marks.resize((s.numbers + Document::markStep - 1) / Document::markStep);
+    document_.packedNumbers = s.packedNumbers;
+    document_.marks.resize((s.packedNumbers + Document::markStep - 1) / Document::markStep);
     document_.keys.resize(s.keys);
     uses_.resize(s.uses);
 }
@@ -246,8 +245,13 @@ void TreeReader::openBlock(const OpenNode& owner, bool discard) {
         return skipDeepBlock();
     }
     blocks_.push_back({owner, discard, sizes(), Document::kNone, at_});
-    if (!discard) document_.nodes[owner.index].hasBlock = true;
-    ++at_;
+    if (discard) {
+        ++at_;
+        return;
+    }
+    Record& node = document_.nodes[owner.index];
+    node.hasBlock = true;
+    if (node.numberCount > 0 || plannedBraces_ || !readPackedRows(node)) ++at_;
 }
 
 // To the brace that matches the one here, minding only comments and texts.

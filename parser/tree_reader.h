@@ -34,7 +34,7 @@ class TreeReader {
 
     // Sizes of the growing arrays: what a slashdash removes is cut off again.
     struct Sizes {
-        std::size_t nodes, values, numbers, keys, uses;
+        std::size_t nodes, values, packedNumbers, keys, uses;
     };
     // A node whose end has not been reached.
     struct OpenNode {
@@ -80,7 +80,10 @@ class TreeReader {
     void addValue(Record&, std::uint32_t index, const schema::Value&);
     void readTextOrKey(Record&, std::uint32_t index, const char* annotation);
     void readKey(Record&, std::uint32_t index, const KeyName&);
+    static const char* packedNumberEnd(const char* p);
     bool readNumber(Record&);
+    bool readPackedRows(Record&);
+    static const char* skipBetweenRows(const char* p);
     bool readSlashdashEntry(const OpenNode&);
     void readEquals(Record&);
     bool readAnnotation(Record&);
@@ -115,6 +118,7 @@ class TreeReader {
     const SourceText text_;
     const std::uint32_t maxDepth_;
     std::span<const ImpliedBrace> implied_; // those to come
+    const bool plannedBraces_;              // there are some: no block is what it looks like
     const char* at_;                        // next character to read
     const char* entryEnd_;                  // end of the last entry, where no other may begin; or null
     std::vector<Block> blocks_;             // the first one is the whole file

@@ -71,7 +71,7 @@ class MeaningReader {
         if (n.allNumbers()) {
             const auto numbers = n.numbers();
             writer_.number(numbers.size());
-            writer_.bytes(std::as_bytes(numbers));
+            for (const double number : numbers) writer_.number(number);
         } else {
             span(n.nameSpan()), span(n.headSpan());
             writer_.number(n.valueCount());

@@ -208,10 +208,14 @@ class ListBinder {
           reader_(measureOf(field), header_, context.diagnostics) {}
 
     std::optional<BoundValue> points() {
-        std::vector<double> flat;
-        if (!collect(3, flat)) return std::nullopt;
-        std::vector<Vec3d> points(flat.size() / 3);
-        for (std::size_t i = 0; i < points.size(); ++i) points[i] = {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
+        std::vector<double> flat; // of one row: those of a large mesh together would take as much as its points
+        std::vector<Vec3d> points;
+        if (entry_.node()) points.reserve(entry_.node()->packedRows());
+        const auto take = [&] {
+            for (std::size_t i = 0; i + 2 < flat.size(); i += 3) points.push_back({flat[i], flat[i + 1], flat[i + 2]});
+            flat.clear();
+        };
+        if (!collect(3, flat, take)) return std::nullopt;
         return points;
     }
 
@@ -241,6 +245,11 @@ class ListBinder {
             return std::nullopt;
         }
         IndexRows rows;
+        if (const std::size_t count = entry_.node()->packedRows(); count > 0) {
+            const std::size_t corners = (*entry_.node()->children().begin()).valueCount(); // mostly those of all
+            rows.counts.reserve(count);
+            rows.indices.reserve(count * std::min<std::size_t>(corners, 4));
+        }
         for (const Node child : entry_.node()->children())
             if (!isRow(child) || !addFace(child, rows)) return std::nullopt;
         if (rows.counts.empty()) return empty();
@@ -335,22 +344,32 @@ class ListBinder {
         return false;
     }
 
-    // All numbers of the line or of its rows, in SI units; each row a multiple of `step` long.
-    bool collect(std::size_t step, std::vector<double>& out) {
+    // All numbers of the line or of its rows, in SI units; each row a multiple of `step` long. What `take` does is done
+    // after every row.
+    template <typename Take> bool collect(std::size_t step, std::vector<double>& out, Take take) {
+        bool any = false;
         if (!entry_.hasBlock()) {
             if (!append(entry_, step, out)) return false;
+            any = !out.empty();
+            take();
         } else {
             if (entry_.count() > 0) {
                 report(diagnostics_, entry_.span(), "E0306",
                        fmt::format("`{}` takes numbers in its line or in rows", field_.name), "not both");
                 return false;
             }
-            for (const Node child : entry_.node()->children())
+            for (const Node child : entry_.node()->children()) {
                 if (!isRow(child) || !append(Entry(child), step, out)) return false;
+                any = any || !out.empty();
+                take();
+            }
         }
-        if (!out.empty()) return true;
+        if (any) return true;
         empty();
         return false;
+    }
+    bool collect(std::size_t step, std::vector<double>& out) {
+        return collect(step, out, [] {});
     }
 
     bool append(const Entry& row, std::size_t step, std::vector<double>& out) {
@@ -364,20 +383,31 @@ class ListBinder {
     }
 
     bool addFace(const Node& row, IndexRows& rows) {
+        if (row.allNumbers()) return addPackedFace(row, row.numbers(), rows);
         const std::size_t count = row.valueCount();
-        if (count < 3) {
-            report(diagnostics_, row.headSpan(), "E0309", "a face needs at least three vertices",
-                   fmt::format("has {}", count));
-            return false;
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            if (row.allNumbers() && isIndex(row.numbers()[i])) // the fast path of packed rows
-                rows.indices.push_back(static_cast<std::uint32_t>(row.numbers()[i]));
-            else if (!addIndex(row.value(i), rows.indices))
-                return false;
-        }
+        if (count < 3) return fewVertices(row, count);
+        for (std::size_t i = 0; i < count; ++i)
+            if (!addIndex(row.value(i), rows.indices)) return false;
         rows.counts.push_back(static_cast<std::uint32_t>(count));
         return true;
+    }
+
+    bool addPackedFace(const Node& row, const PackedNumbers& numbers, IndexRows& rows) {
+        if (numbers.size() < 3) return fewVertices(row, numbers.size());
+        std::size_t i = 0;
+        for (const double index : numbers) {
+            if (!isIndex(index)) return badIndex(row.value(i), index);
+            rows.indices.push_back(static_cast<std::uint32_t>(index));
+            ++i;
+        }
+        rows.counts.push_back(static_cast<std::uint32_t>(numbers.size()));
+        return true;
+    }
+
+    bool fewVertices(const Node& row, std::size_t count) {
+        report(diagnostics_, row.headSpan(), "E0309", "a face needs at least three vertices",
+               fmt::format("has {}", count));
+        return false;
     }
 
     static bool isIndex(double x) { return x >= 0 && x == std::floor(x) && x <= kLargestIndex; }

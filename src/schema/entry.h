@@ -28,7 +28,7 @@ class Entry {
     std::size_t count() const { return node_ ? node_->valueCount() - skipped_ : values_.size(); }
     Value value(std::size_t i) const { return node_ ? node_->value(skipped_ + i) : values_[i]; }
     bool packed() const { return node_ && node_->allNumbers(); }
-    std::span<const double> numbers() const { return node_->numbers().subspan(skipped_); } // requires packed()
+    PackedNumbers numbers() const { return node_->numbers().without(skipped_); } // requires packed()
     std::span<const Key> keys() const { return keys_; }
     const std::optional<Node>& node() const { return node_; } // nothing for arguments
     bool hasBlock() const { return node_ && node_->hasBlock(); }

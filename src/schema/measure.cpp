@@ -299,18 +299,16 @@ bool MeasureReader::appendPacked(const Entry& entry, std::vector<double>& out) c
     const double lower = lowest(scale.dimension), upper = highest(scale.dimension);
     const auto numbers = entry.numbers();
     const std::size_t start = out.size();
-    out.resize(start + numbers.size());
-    bool good = true;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const double x = numbers[i] * scale.factor;
-        out[start + i] = x;
+    if (numbers.size() > out.capacity() - start) out.reserve(std::max(start + numbers.size(), 2 * start));
+    for (const double number : numbers) {
+        const double x = number * scale.factor;
+        out.push_back(x);
         if (x >= lower && x <= upper) continue;
-        const Value value = entry.value(i); // found again in the text: only for the message
-        good = false;
-        if (number(value)) inRange(x, scale, value);
-        break;
+        const Value value = entry.value(out.size() - start - 1); // with its place, for the message
+        if (this->number(value)) inRange(x, scale, value);
+        return false;
     }
-    return good;
+    return true;
 }
 
 bool MeasureReader::append(const Entry& entry, std::size_t first, std::vector<double>& out) const {

@@ -27,6 +27,7 @@ void collectTexts(const Node& node, Texts& out) {
             if (const Value value = node.value(i); value.isText()) out.insert(value.text);
     for (const Key& key : node.keys())
         if (key.value.isText()) out.insert(key.value.text);
+    if (node.packedRows() > 0) return; // of numbers alone
     for (const Node child : node.children()) collectTexts(child, out);
 }
 

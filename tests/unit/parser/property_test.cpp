@@ -197,6 +197,13 @@ TEST_CASE("every prefix of a scene is read to its end") {
     }
 }
 
+// Rows of plain numbers have no records, depending on what stands between them.
+std::size_t countOf(const schema::NodeRange& nodes) {
+    std::size_t count = 0;
+    for (const schema::Node node : nodes) count += 1 + countOf(node.children());
+    return count;
+}
+
 TEST_CASE("parsing what was printed gives the same tree") {
     std::mt19937 random(11);
     for (int i = 0; i < 3000; ++i) {
@@ -207,6 +214,6 @@ TEST_CASE("parsing what was printed gives the same tree") {
         const Parsed second = parseText(printed);
         REQUIRE_MESSAGE(second.diagnostics.errorCount() == 0, printed << second.errors());
         CHECK(second.printed() == printed);
-        CHECK(second.document->nodes.size() == first.document->nodes.size());
+        CHECK(countOf(second.document->roots()) == countOf(first.document->roots()));
     }
 }
