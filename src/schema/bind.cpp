@@ -206,7 +206,9 @@ class Binding {
             meant_.push_back(meant);
             return;
         }
-        if (std::string advice = adviceFor(type_, name); !advice.empty()) {
+        std::string advice = adviceFor(type_, name);
+        if (advice.empty()) advice = adviceForControl(name);
+        if (!advice.empty()) {
             d.help = std::move(advice);
             return;
         }

@@ -14,10 +14,6 @@ namespace abbe::schema {
 
 namespace {
 
-// Words of programs: a scene has none.
-constexpr auto kControlWords =
-    std::to_array<std::string_view>({"for", "foreach", "repeat", "loop", "while", "if", "else", "function", "def"});
-
 bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances || kind == Kind::atmosphere; }
 
 bool isTyped(Kind kind) {
@@ -57,11 +53,9 @@ void reportPlanned(std::string_view word, Span span, Diagnostics& diagnostics) {
 void DefinitionReader::unknownKind(const Node& node) const {
     auto& d = report(diagnostics_, node.nameSpan(), "E0215",
                      fmt::format("`{}` is not a kind of definition", node.name()), "unknown kind");
-    if (std::ranges::find(kControlWords, node.name()) != kControlWords.end()) {
+    if (std::string advice = adviceForControl(node.name()); !advice.empty()) {
         d.message = fmt::format("scenes have no `{}`: they say what there is, not what to do", node.name());
-        d.help = "many of a kind are `instances` (`grid`, `scatter`, or places from a file); numbers are computed in "
-                 "quotes, "
-                 "`\"$r * 2\"`; anything else is for a program that writes scene files";
+        d.help = std::move(advice);
         return;
     }
     for (const TypeInfo& type : table_.all())

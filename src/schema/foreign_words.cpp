@@ -197,6 +197,14 @@ std::string adviceFor(const TypeInfo& type, std::string_view word) {
     return "shadows are where light does not reach: every light and every shape casts them";
 }
 
+std::string adviceForControl(std::string_view word) {
+    constexpr auto kWords =
+        std::to_array<std::string_view>({"for", "foreach", "repeat", "loop", "while", "if", "else", "function", "def"});
+    if (std::ranges::find(kWords, word) == kWords.end()) return {};
+    return "many of a kind are `instances` (`grid`, `scatter`, or places from a file); numbers are computed in quotes, "
+           "`\"$r * 2\"`; anything else is for a script that writes the scene, with the Python package `abbe` say";
+}
+
 std::string_view foreignType(const TypeTable& table, Kind kind, std::string_view word) {
     const std::string letters = lettersOf(word);
     for (const TypeWord& t : kTypes)

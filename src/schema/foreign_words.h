@@ -22,6 +22,9 @@ ForeignProperty translate(const TypeInfo&, const FieldInfo& meant, const Node& w
 // What to do about a property that no property here stands for, a switch of shadows for example; empty if unknown.
 std::string adviceFor(const TypeInfo&, std::string_view word);
 
+// What a scene has in place of a loop or a condition, `for` for example; empty for other words.
+std::string adviceForControl(std::string_view word);
+
 // A type of another program, as one of ours: "principled" -> openpbr. Nothing is certain about its properties.
 std::string_view foreignType(const TypeTable&, Kind, std::string_view word);
 

@@ -266,9 +266,18 @@ TEST_CASE("expressions are bounded") {
 }
 
 TEST_CASE("no loops") {
-    for (const char* word : {"for", "repeat", "if", "while"}) {
-        const auto l = loadBody(std::string(word) + " i 0 10 { shape sphere }");
+    const auto points = [](const std::string& help) {
+        for (const char* to : {"`instances`", "`scatter`", "Python package `abbe`"})
+            CHECK_MESSAGE(help.find(to) != std::string::npos, help);
+    };
+    for (const std::string word : {"for", "foreach", "repeat", "loop", "if", "while"}) {
+        INFO(word);
+        const auto l = loadBody(word + " i 0 10 { shape sphere }");
         CHECK(l->codes() == "E0215");
-        CHECK(l->get("E0215").help.find("instances") != std::string::npos);
+        points(l->get("E0215").help);
+        CHECK(loadBody("group { " + word + " 3 { shape sphere } }")->codes() == "E0215");
+        const auto property = loadBody("shape sphere { " + word + " 3 }");
+        CHECK(property->codes() == "E0201");
+        points(property->get("E0201").help);
     }
 }
