@@ -206,7 +206,8 @@ class LayerLoader {
         }
         open_.push_back({real, place(*name)});
         Diagnostics unread;
-        const auto text = readSceneFile(sources_, path->lexically_normal(), unread);
+        const auto text = options_.read ? options_.read(sources_, path->lexically_normal(), unread)
+                                        : readSceneFile(sources_, path->lexically_normal(), unread);
         addWithIncluders(unread);
         if (!text) return open_.pop_back();
         bytes_ += sources_.text(*text).size();

@@ -5,6 +5,8 @@
 #include "schema/layers.h"
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ struct LayerOptions {
     std::vector<ParameterOverride> defines; // `-D`; those of included files by their names from the scene: "car:turn"
     std::vector<std::string> variants;      // `--variant`
     std::vector<std::string> sets;          // `--set`: "kind.name.property=value"
+    // Reads a file that is included, as readSceneFile does, which does it without this: an editor has texts of its own.
+    std::function<std::optional<FileId>(SourceMap&, const std::filesystem::path&, Diagnostics&)> read = {};
 };
 
 // Reads what `file`, the text of the scene at `path`, includes, and reports what cannot be read, the parameters of `-D`

@@ -24,14 +24,51 @@ Language::Language() : types(makeTypeTable()) {
     addPresets(types, sources, diagnostics);
 }
 
-Analysis::Analysis(const Language& language, const std::filesystem::path& path, std::string text)
+Analysis::Analysis(const Language& language, const std::filesystem::path& path, std::string text,
+                   const Workspace* workspace)
     : language_(language), file_(sources_.add(path.string(), std::move(text))) {
-    const schema::LayerFiles files = readLayerFiles(sources_, file_, path, {}, diagnostics_);
+    if (!workspace) {
+        read(path, {});
+        return;
+    }
+    read(path, [&](SourceMap& sources, const std::filesystem::path& file, Diagnostics& found) {
+        included_.emplace_back(file, workspace->stampOf(file));
+        return workspace->read(sources, file, found);
+    });
+}
+
+Analysis::Analysis(const Language& language, const std::filesystem::path& path, const Workspace& workspace,
+                   const std::map<std::filesystem::path, std::string>& texts)
+    : language_(language), file_() {
+    const auto given = [&](SourceMap& sources, const std::filesystem::path& file, Diagnostics& found) {
+        const auto text = texts.find(realPathOf(file));
+        return text == texts.end() ? workspace.read(sources, file, found)
+                                   : std::optional(sources.add(file.string(), text->second));
+    };
+    const auto own = given(sources_, path, diagnostics_);
+    file_ = own ? *own : sources_.add(path.string(), {});
+    read(path, given);
+}
+
+void Analysis::read(const std::filesystem::path& path, const Reader& reader) {
+    LayerOptions options;
+    options.read = reader;
+    const schema::LayerFiles files = readLayerFiles(sources_, file_, path, options, diagnostics_);
     document_ = files.files.front().document;
     syntaxErrors_ = std::ranges::any_of(diagnostics_.all(), [&](const Diagnostic& d) {
         return d.severity == Severity::error && d.code.starts_with("E01") && d.span.file == file_;
     });
     tree_ = schema::resolve(files, language_.types, diagnostics_);
+}
+
+bool Analysis::isCurrent(const Workspace& workspace) const {
+    return std::ranges::all_of(included_,
+                               [&](const auto& file) { return workspace.stampOf(file.first) == file.second; });
+}
+
+const TextLines& Analysis::lines(FileId file) const {
+    const auto found = lines_.find(file);
+    return found != lines_.end() ? found->second : lines_.emplace(file, TextLines(sources_.text(file))).first->second;
 }
 
 const FieldInfo* Scope::find(std::string_view property) const {
@@ -221,17 +258,27 @@ const Meaning* Analysis::meaningAt(std::size_t offset) const {
     return nullptr;
 }
 
-std::vector<Meaning> Analysis::occurrences(const Meaning& of) const {
-    const auto group = [](Sense sense) {
-        const bool parameter = sense == Sense::parameter || sense == Sense::parameterUse;
-        return parameter ? 2 : sense == Sense::name || sense == Sense::reference ? 1 : 0;
-    };
+std::optional<Subject> Analysis::subjectOf(const Meaning& m) const {
+    const bool parameter = m.sense == Sense::parameter || m.sense == Sense::parameterUse;
+    if (!parameter && m.sense != Sense::name && m.sense != Sense::reference) return std::nullopt;
+    const std::string name = m.as.empty() ? std::string(m.text) : std::string(m.as) + ":" + std::string(m.text);
+    return Subject{parameter, parameter ? Kind::shape : m.kind, tree_.fullName(m.span, name)};
+}
+
+std::vector<Meaning> Analysis::occurrences(const Subject& subject) const {
     std::vector<Meaning> found;
-    if (group(of.sense) == 0) return found;
-    for (const Meaning& m : meanings())
-        if (group(m.sense) == group(of.sense) && m.text == of.text && (group(m.sense) == 2 || m.kind == of.kind))
-            found.push_back(m);
+    for (const auto part : allMeanings())
+        for (const Meaning& m : part) {
+            const bool parameter = m.sense == Sense::parameter || m.sense == Sense::parameterUse;
+            if (parameter != subject.parameter || !subject.name.ends_with(m.text)) continue;
+            if (subjectOf(m) == subject) found.push_back(m);
+        }
     return found;
+}
+
+std::vector<Meaning> Analysis::occurrences(const Meaning& of) const {
+    const auto subject = subjectOf(of);
+    return subject ? occurrences(*subject) : std::vector<Meaning>{};
 }
 
 } // namespace abbe::lsp

@@ -4,14 +4,19 @@
 
 #include "base/diagnostic.h"
 #include "language_server/protocol.h"
+#include "language_server/workspace.h"
 #include "schema/scene_tree.h"
 
+#include <array>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace abbe::lsp {
@@ -48,6 +53,16 @@ struct Meaning {
     schema::Kind kind = schema::Kind::shape;  // of a type, a name, a reference
     const schema::TypeInfo* type = nullptr;   // of a type or name; whose property
     const schema::FieldInfo* field = nullptr; // the property, or whose value, unit, key
+    std::string_view as = {};                 // of a parameter that an `include` gives its value: the prefix there
+};
+
+// Words that stand for one definition or parameter, wherever they are: by its whole name.
+struct Subject {
+    bool parameter = false;
+    schema::Kind kind = schema::Kind::shape; // of a definition
+    std::string name;
+
+    auto operator<=>(const Subject&) const = default;
 };
 
 // What may stand in a block.
@@ -74,8 +89,12 @@ struct Scope {
 // One version of a text. Not movable: all else refers to it.
 class Analysis {
   public:
-    // `path` names the text and says where its files are; those that it includes are read from there.
-    Analysis(const Language&, const std::filesystem::path& path, std::string text);
+    // `path` names the text and says where its files are; those that it includes are read from there, or as the
+    // workspace has them.
+    Analysis(const Language&, const std::filesystem::path& path, std::string text, const Workspace* = nullptr);
+    // With other texts for some of the files, by their real paths.
+    Analysis(const Language&, const std::filesystem::path& path, const Workspace&,
+             const std::map<std::filesystem::path, std::string>& texts);
     Analysis(const Analysis&) = delete;
     Analysis& operator=(const Analysis&) = delete;
 
@@ -88,12 +107,19 @@ class Analysis {
     bool hasSyntaxErrors() const { return syntaxErrors_; }
     // Of syntax and names.
     std::size_t errorCount() const { return diagnostics_.errorCount(); }
-    // Of all words, by their places.
+    // Whether the files that it includes are what they were.
+    bool isCurrent(const Workspace&) const;
+    // Of all words of the text, by their places.
     const std::vector<Meaning>& meanings() const;
+    // Likewise of the text, and of the files that it includes.
+    std::array<std::span<const Meaning>, 2> allMeanings() const;
+    const TextLines& lines(FileId) const;
     // Of the word that begins before, holds, or ends at `offset`; null where there is none.
     const Meaning* meaningAt(std::size_t offset) const;
-    // All words that stand for the same definition or parameter as this one, its definition among them; empty for
-    // words that stand for neither.
+    // What a word stands for; nothing for words that stand for neither a definition nor a parameter.
+    std::optional<Subject> subjectOf(const Meaning&) const;
+    // All words that stand for it, its definition among them, in all files of the scene, those of the text first.
+    std::vector<Meaning> occurrences(const Subject&) const;
     std::vector<Meaning> occurrences(const Meaning&) const;
 
     // The block of a node that stands in `outer`.
@@ -102,6 +128,8 @@ class Analysis {
     Scope inlineScope(schema::Kind, const schema::Node&, std::size_t word) const;
 
   private:
+    using Reader = std::function<std::optional<FileId>(SourceMap&, const std::filesystem::path&, Diagnostics&)>;
+    void read(const std::filesystem::path& path, const Reader&);
     Scope layerScope(const schema::Node&) const;
 
     const Language& language_;
@@ -111,7 +139,9 @@ class Analysis {
     bool syntaxErrors_ = false;
     std::shared_ptr<const schema::Document> document_;
     schema::SceneTree tree_;
-    mutable std::optional<std::vector<Meaning>> meanings_;
+    std::vector<std::pair<std::filesystem::path, Workspace::Stamp>> included_;
+    mutable std::optional<std::vector<Meaning>> meanings_, includedMeanings_;
+    mutable std::map<FileId, TextLines> lines_;
 };
 
 // Where a text is being written.

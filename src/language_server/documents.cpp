@@ -31,9 +31,10 @@ std::string OpenText::path() const {
     return (folder / "untitled.scene").string();
 }
 
-View OpenText::view(const Language& language, Encoding encoding) {
-    if (!analysis_) analysis_ = std::make_unique<const Analysis>(language, path(), text_);
-    return {uri_, *analysis_, lines_, encoding};
+View OpenText::view(const Language& language, Encoding encoding, const Workspace& workspace) {
+    if (analysis_ && !analysis_->isCurrent(workspace)) analysis_.reset();
+    if (!analysis_) analysis_ = std::make_unique<const Analysis>(language, path(), text_, &workspace);
+    return {uri_, *analysis_, lines_, encoding, &workspace};
 }
 
 std::span<const Finding> OpenText::currentFindings() const {
@@ -41,10 +42,15 @@ std::span<const Finding> OpenText::currentFindings() const {
 }
 
 OpenText& Documents::open(const std::string& uri, std::string text, std::int64_t version) {
-    return texts_.insert_or_assign(uri, OpenText(uri, std::move(text), version)).first->second;
+    OpenText& opened = texts_.insert_or_assign(uri, OpenText(uri, std::move(text), version)).first->second;
+    workspace_.open(opened);
+    return opened;
 }
 
-void Documents::close(const std::string& uri) { texts_.erase(uri); }
+void Documents::close(const std::string& uri) {
+    if (const OpenText* const text = find(uri)) workspace_.close(*text);
+    texts_.erase(uri);
+}
 
 OpenText* Documents::find(const std::string& uri) {
     const auto found = texts_.find(uri);

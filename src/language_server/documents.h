@@ -5,6 +5,7 @@
 #include "language_server/checking.h"
 #include "language_server/features.h"
 #include "language_server/server.h"
+#include "language_server/workspace.h"
 
 #include <map>
 #include <memory>
@@ -31,8 +32,10 @@ class OpenText {
     std::size_t offset(const Json& position, Encoding e) const {
         return lines_.offset(text_, positionFrom(position), e);
     }
-    // Of this version: made when it is first asked for.
-    View view(const Language&, Encoding);
+    // Of this version, and of files as they are: made when it is first asked for.
+    View view(const Language&, Encoding, const Workspace&);
+    // Forgets what is known of this version: files may have come that were not there.
+    void forget() { analysis_.reset(); }
 
     std::optional<Server::Clock::time_point> checkAt; // when it wants to be checked
     std::vector<Finding> findings;                    // of the last check
@@ -55,6 +58,7 @@ class Documents {
     // Null: not open.
     OpenText* find(const std::string& uri);
     std::map<std::string, OpenText>& all() { return texts_; }
+    Workspace& workspace() { return workspace_; }
 
     // Takes what a check has found. The URIs of files whose list is another one now.
     std::vector<std::string> take(const CheckResult&, bool complete);
@@ -63,6 +67,7 @@ class Documents {
 
   private:
     std::map<std::string, OpenText> texts_;
+    Workspace workspace_;
     std::map<std::string, std::map<std::string, std::vector<Finding>>> others_; // by file, then by the checked text
 };
 

@@ -25,6 +25,7 @@ struct View {
     const Analysis& analysis;
     const TextLines& lines;
     Encoding encoding;
+    const Workspace* workspace = nullptr;
 
     Range range(std::size_t begin, std::size_t end) const {
         return {lines.position(analysis.text(), begin, encoding), lines.position(analysis.text(), end, encoding)};
@@ -33,6 +34,9 @@ struct View {
     // `{uri, range}` in whichever file the span lies.
     Json location(Span) const;
 };
+
+// A place in a file of a scene.
+Range rangeIn(const Analysis&, Span, Encoding);
 
 Json completion(const View&, std::size_t offset, bool afterSpace);
 // `findings`: of the same version of the text; those at the place are explained.
@@ -43,7 +47,8 @@ Json referencesTo(const View&, std::size_t offset, bool withDefinition);
 Json highlights(const View&, std::size_t offset);
 // Range and name of what can be renamed.
 Json renamable(const View&, std::size_t offset);
-// The edits; throws RequestError for a name that is none, is taken, or would change what the scene means.
+// The edits of all files that use the name: those of the scene, and scenes of the workspace that include one of them.
+// Throws RequestError for a name that is none, is taken, or would change what a scene means.
 Json rename(const View&, std::size_t offset, const std::string& newName);
 
 Json symbols(const View&);

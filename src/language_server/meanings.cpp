@@ -1,5 +1,6 @@
 #include "language_server/analysis.h"
 #include "schema/definition_reader.h"
+#include "schema/expression.h"
 #include "schema/layers.h"
 #include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
@@ -24,15 +25,17 @@ class MeaningReader {
     MeaningReader(const Analysis& analysis, std::vector<Meaning>& out)
         : analysis_(analysis), types_(analysis.language().types), out_(out) {}
 
-    void read() {
-        for (const Node node : analysis_.document().roots()) {
+    void read(const schema::Document& document) {
+        for (const Node node : document.roots()) {
             if (schema::isHeader(node))
                 header(node);
             else
                 statement(node, {});
         }
-        for (const auto& parameter : analysis_.document().parameters)
+        for (const auto& parameter : document.parameters) {
             add(parameter.nameSpan, Sense::parameter, parameter.name);
+            for (const Value& value : parameter.written) computed(value);
+        }
         const auto before = [](const Meaning& a, const Meaning& b) {
             return a.span.begin != b.span.begin ? a.span.begin < b.span.begin : a.sense < b.sense;
         };
@@ -78,9 +81,29 @@ class MeaningReader {
         } else if (value.kind == schema::ValueKind::word && value.text.starts_with('$')) { // there is no such parameter
             sense = Sense::parameterUse;
         }
+        computed(value);
         Meaning& m = add(value.span, sense, sense == Sense::parameterUse ? value.text.substr(1) : value.text);
         m.field = field;
         return m;
+    }
+
+    // `$name` in a text that is computed: "$r * 2". One with escapes is left alone, as its places are others.
+    void computed(const Value& value) {
+        const std::string_view text = value.text;
+        const auto& parameters = analysis_.tree().headerOf(value.span).parameters;
+        if (!parameters || !schema::isComputed(value) || value.span.end - value.span.begin != text.size() + 2) return;
+        for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
+            std::size_t end = schema::endOfName(text, at + 1);
+            // `$a-1` uses `a` unless a parameter is called so.
+            while (end > at + 1 && !parameters->find(value.span.file, text.substr(at + 1, end - at - 1))) {
+                const std::size_t minus = text.substr(0, end).rfind('-');
+                end = minus == std::string_view::npos || minus <= at ? at : minus;
+            }
+            if (end <= at + 1) continue;
+            const auto begin = static_cast<std::uint32_t>(value.span.begin + 1 + at);
+            add({value.span.file, begin, static_cast<std::uint32_t>(begin + end - at)}, Sense::parameterUse,
+                text.substr(at + 1, end - at - 1));
+        }
     }
 
     void addReference(const Value& value, Kind kind, const FieldInfo* field) {
@@ -133,7 +156,7 @@ class MeaningReader {
         const Row row = rowOf(node);
         if (const Value* const file = node.name() == "include" ? row.text() : nullptr) {
             addValue(*file, Sense::file);
-            for (const Node parameter : node.children()) add(parameter.nameSpan(), Sense::kind, parameter.name());
+            for (const Node parameter : node.children()) given(node, parameter);
         }
         if (node.name() == "override" || node.name() == "remove")
             if (const auto kind = row.text() ? schema::findKind(row.values[0].text) : std::nullopt) {
@@ -141,6 +164,16 @@ class MeaningReader {
                 if (row.values.size() > 1 && row.values[1].isText()) addReference(row.values[1], *kind, nullptr);
             }
         block(node, scope);
+    }
+
+    // `param turn 10 deg` in the block of `include "car.scene" as=car`
+    void given(const Node& include, const Node& parameter) {
+        add(parameter.nameSpan(), Sense::kind, parameter.name());
+        const Row row = rowOf(parameter);
+        if (parameter.name() != "param" || !row.text()) return;
+        Meaning& m = add(row.values[0].span, Sense::parameterUse, row.values[0].text);
+        for (const Key& key : include.keys())
+            if (key.name == "as" && key.value.isText()) m.as = key.value.text;
     }
 
     void definition(const Node& node, const Scope& scope) {
@@ -326,7 +359,7 @@ class MeaningReader {
         const bool ownKeys = std::ranges::all_of(row.keys, isOwn);
         const bool bare = row.isBare() && ownKeys;
         const TypeInfo* const type = word ? types_.find(kind, word->text) : nullptr;
-        if (word && bare && (!type || analysis_.tree().find(kind, word->text)))
+        if (word && bare && (!type || analysis_.tree().find(kind, word->text, word->span)))
             addReference(*word, kind, &field);
         else if (word && type)
             inlined(kind, *word, *type, row);
@@ -359,8 +392,10 @@ class MeaningReader {
         const auto& tree = analysis_.tree();
         const bool bare = row.isBare() && row.keys.empty();
         const bool textured = field.texturable || field.type == FieldType::stop;
-        if (bare && tree.find(Kind::spectrum, word->text)) return addReference(*word, Kind::spectrum, &field);
-        if (textured && bare && tree.find(Kind::texture, word->text)) return addReference(*word, Kind::texture, &field);
+        if (bare && tree.find(Kind::spectrum, word->text, word->span))
+            return addReference(*word, Kind::spectrum, &field);
+        if (textured && bare && tree.find(Kind::texture, word->text, word->span))
+            return addReference(*word, Kind::texture, &field);
         if (const TypeInfo* const type = textured ? types_.find(Kind::texture, word->text) : nullptr)
             return inlined(Kind::texture, *word, *type, row);
         if (std::ranges::find(field.choices, word->text) != field.choices.end()) {
@@ -403,9 +438,22 @@ class MeaningReader {
 const std::vector<Meaning>& Analysis::meanings() const {
     if (!meanings_) {
         meanings_.emplace();
-        MeaningReader(*this, *meanings_).read();
+        MeaningReader(*this, *meanings_).read(*document_);
     }
     return *meanings_;
+}
+
+std::array<std::span<const Meaning>, 2> Analysis::allMeanings() const {
+    if (!includedMeanings_) {
+        includedMeanings_.emplace();
+        for (const auto& [file, insert] : tree_.inserts) {
+            if (!insert.written) continue;
+            std::vector<Meaning> found;
+            MeaningReader(*this, found).read(*insert.document);
+            includedMeanings_->insert(includedMeanings_->end(), found.begin(), found.end());
+        }
+    }
+    return {meanings(), *includedMeanings_};
 }
 
 } // namespace abbe::lsp

@@ -166,10 +166,9 @@ class Server::State {
         try {
             if (method == "textDocument/didOpen") didOpen(params.at("textDocument"));
             if (method == "textDocument/didChange") didChange(params);
-            if (method == "textDocument/didSave") recheck(params.at("textDocument").at("uri").get<std::string>());
+            if (method == "textDocument/didSave") filesChanged();
             if (method == "textDocument/didClose") didClose(params.at("textDocument").at("uri").get<std::string>());
-            if (method == "workspace/didChangeWatchedFiles")
-                for (auto& [uri, text] : documents_.all()) text.checkAt = now_;
+            if (method == "workspace/didChangeWatchedFiles") filesChanged();
         } catch (const Json::exception&) {
             warn(fmt::format("`{}` has other parameters, and is ignored", method));
         }
@@ -197,8 +196,12 @@ class Server::State {
         for (const Json& change : params.at("contentChanges")) text->change(change, encoding_);
     }
 
-    void recheck(const std::string& uri) {
-        if (OpenText* const text = documents_.find(uri)) text->checkAt = now_;
+    // Any text may include them, or name one that was not there.
+    void filesChanged() {
+        for (auto& [uri, text] : documents_.all()) {
+            text.forget();
+            text.checkAt = now_;
+        }
     }
 
     void didClose(const std::string& uri) {
@@ -221,7 +224,7 @@ class Server::State {
         const auto uri = params.at("textDocument").at("uri").get<std::string>();
         OpenText* const text = documents_.find(uri);
         if (!text) throw RequestError(ErrorCode::invalidParams, fmt::format("`{}` is not open", uri));
-        const View view = text->view(language(), encoding_);
+        const View view = text->view(language(), encoding_, documents_.workspace());
         return formats ? formatting(view, format_) : answerAbout(method, {view, *text, params});
     }
 
@@ -232,7 +235,23 @@ class Server::State {
         if (params.is_object() && params.contains(offered))
             for (const Json& encoding : params.at(offered))
                 if (encoding == "utf-8") encoding_ = Encoding::utf8;
+        if (params.is_object()) readWorkspace(params);
         return {{"capabilities", capabilities(encoding_, format_ != nullptr)}, {"serverInfo", {{"name", "abbe"}}}};
+    }
+
+    void readWorkspace(const Json& params) {
+        Workspace& workspace = documents_.workspace();
+        const Json::json_pointer changes("/capabilities/workspace/workspaceEdit/documentChanges");
+        workspace.documentChanges = params.contains(changes) && params.at(changes) == true;
+        const auto add = [&](const Json& uri) {
+            if (!uri.is_string()) return;
+            if (const auto path = pathOf(uri.get<std::string>())) workspace.folders.push_back(*path);
+        };
+        const Json folders = params.value("workspaceFolders", Json());
+        if (folders.is_array())
+            for (const Json& folder : folders)
+                if (folder.is_object()) add(folder.value("uri", Json()));
+        if (workspace.folders.empty()) add(params.value("rootUri", Json()));
     }
 
     // Made when it is first needed, as starting must be quick.

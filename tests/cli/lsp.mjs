@@ -325,6 +325,96 @@ async function names(client) {
     check(text.includes('material cube diffuse') && text.includes('{ material cube }'), 'quotes that are not needed', text);
 }
 
+// --- names in the files of a scene, and in the scenes of a workspace
+
+async function includes() {
+    mkdirSync('set/props', { recursive: true });
+    const uriOf = (name) => `${pathToFileURL(join(process.cwd(), 'set')).href}/${name}`;
+    const texts = {
+        'props/paints.scene': 'scene 1\nparam tone 0.5\nparam dark "$tone / 2"\nmaterial gold diffuse { reflectance $tone }\nmaterial soot diffuse { reflectance "$dark" }\n',
+        'room.scene': 'scene 1\ncamera\nlight sky\ninclude "props/paints.scene"\nshape floor plane { material gold }\n',
+        'shot.scene': 'scene 1\ninclude "room.scene"\ninclude "props/paints.scene" as=l { param tone 0.2 }\noverride material gold { reflectance 0.1 }\nshape ball sphere { material l:gold }\nshape cube box { material "l:soot" }\n',
+        'alone.scene': 'scene 1\nmaterial gold diffuse\nshape sphere { material gold }\n',
+    };
+    for (const [name, text] of Object.entries(texts)) writeFileSync(join('set', name), text);
+    const client = new Client(program);
+    await client.result('initialize', { processId: process.pid, rootUri: uriOf(''), capabilities: { workspace: { workspaceEdit: { documentChanges: true } } } });
+    const editor = new Editor(client, 'set/shot.scene');
+    const opened = [editor];
+    editor.show(texts['shot.scene']);
+
+    // Definitions and uses are where they are, whichever file that is.
+    const found = async (word, method = 'definition', more) => {
+        editor.behind(word);
+        return (await editor.result(method, more)).map((l) => `${l.uri.slice(uriOf('').length)}:${l.range.start.line}`).sort().join(' ');
+    };
+    let places = await found('material gol');
+    check(places === 'props/paints.scene:3', 'a definition two files away', places);
+    places = await found('material l:go');
+    check(places === 'props/paints.scene:3', 'a definition in a file with a prefix', places);
+    places = await found('material gol', 'references', { context: { includeDeclaration: true } });
+    check(places === 'props/paints.scene:3 room.scene:4 shot.scene:3', 'uses in all files', places);
+    places = await found('param ton', 'references', { context: { includeDeclaration: true } });
+    check(places === 'props/paints.scene:1 props/paints.scene:2 props/paints.scene:3 shot.scene:2', 'uses of a parameter, in texts too', places);
+    check((await editor.labels(texts['shot.scene'].replace('material l:gold', 'material |'))).join().includes('l:gold'), 'materials of an included file');
+    check(editor.items.some((i) => i.label === 'gold') && editor.items.some((i) => i.label === 'l:soot'), 'with and without a prefix');
+    editor.show(texts['shot.scene']);
+
+    // The file is edited once, and so are all that use the name: by its own prefix, by another one, in another scene.
+    const renamed = async (editor, word, name) => {
+        editor.behind(word);
+        const answer = await editor.ask('rename', { newName: name });
+        if (answer.error) return answer.error.message;
+        const after = {};
+        for (const { textDocument, edits } of answer.result.documentChanges) {
+            const file = textDocument.uri.slice(uriOf('').length);
+            const open = opened.find((e) => e.uri === textDocument.uri);
+            check(textDocument.version === (open ? open.version : null), `the version of ${file}`, textDocument);
+            after[file] = apply(open ? open.text : texts[file], edits);
+        }
+        return after;
+    };
+    const brass = (after) => Object.keys(after).sort().join() === 'props/paints.scene,room.scene,shot.scene' &&
+        after['props/paints.scene'] === texts['props/paints.scene'].replace('gold', 'brass') &&
+        after['room.scene'] === texts['room.scene'].replace('gold', 'brass') &&
+        after['shot.scene'] === texts['shot.scene'].replaceAll('gold', 'brass');
+    let after = await renamed(editor, 'material gol', 'brass');
+    check(brass(after), 'a material of an included file', after);
+    after = await renamed(editor, 'material l:go', 'l:brass');
+    check(brass(after), 'by its prefix', after);
+    after = await renamed(editor, 'material l:go', 'brass');
+    check(String(after).includes('begins with `l:`'), 'a name without its prefix', after);
+    after = await renamed(editor, 'material gol', 'soot');
+    check(String(after).includes('the name of another material'), 'a name that is taken in an included file', after);
+    const paints = new Editor(client, 'set/props/paints.scene');
+    paints.show(texts['props/paints.scene']);
+    opened.push(paints);
+    after = await renamed(paints, 'material gol', 'brass');
+    check(brass(after), 'from the library to the scenes that include it', after);
+    after = await renamed(paints, 'param ton', 'grey');
+    check(after['props/paints.scene'] === texts['props/paints.scene'].replaceAll('tone', 'grey') &&
+        after['shot.scene'] === texts['shot.scene'].replace('tone', 'grey') && Object.keys(after).length === 2, 'a parameter, in texts too', after);
+    after = await renamed(paints, 'material gol', 'sphere');
+    check(typeof after === 'object', 'a material may be called like a type of shape', after);
+
+    // What an editor holds of a file counts, and not what is on the disk.
+    paints.show('// new\n' + texts['props/paints.scene'].replace('gold', 'silver'));
+    places = await found('material gol');
+    check(places === '', 'a name that is not there any more', places);
+    editor.show(texts['shot.scene'].replaceAll('gold', 'silver'));
+    places = await found('material l:sil');
+    check(places === 'props/paints.scene:4', 'a name in a text that is not saved', places);
+    client.notify('textDocument/didClose', { textDocument: { uri: paints.uri } });
+    editor.show(texts['shot.scene']);
+    places = await found('material gol');
+    check(places === 'props/paints.scene:3', 'as it is on the disk again', places);
+    // And what another program writes.
+    writeFileSync('set/props/paints.scene', '\n\n' + texts['props/paints.scene']);
+    places = await found('material gol');
+    check(places === 'props/paints.scene:5', 'a file that was changed', places);
+    check(await client.end() === 0, 'the end of a conversation about files');
+}
+
 // --- the text as a whole
 
 async function outlines(client) {
@@ -444,7 +534,7 @@ async function large() {
 const client = new Client(program);
 const told = await client.initialize();
 check(told.capabilities.positionEncoding === 'utf-16' && told.capabilities.textDocumentSync.change === 2, 'capabilities', told);
-const parts = { lifeOfServer, findings, completions, hovers, names, outlines, others, large };
+const parts = { lifeOfServer, findings, completions, hovers, names, includes, outlines, others, large };
 for (const [name, part] of Object.entries(parts)) {
     if (process.env.ABBE_LSP_PART && process.env.ABBE_LSP_PART !== name) continue;
     try {
