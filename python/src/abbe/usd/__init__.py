@@ -46,7 +46,7 @@ class Scene:
     @property
     def files(self) -> dict[str, bytes]:
         """The files that are written beside the scene, by name."""
-        return {name: b"".join(bytes(p) for p in parts) for name, parts in self._files.parts.items()}
+        return {name: self._files.content(name) for name in self._files.parts}
 
     def write(self, path: str | os.PathLike[str], force: bool = False) -> None:
         """Writes the scene, and its files into the folder NAME-files beside it.

@@ -11,8 +11,9 @@ from pxr import UsdGeom
 from . import ply
 from .context import Context, as_float
 from .materials import Look
-from .mesh_data import BadMesh, Primvar, Surface, write_polygons
+from .mesh_data import BadMesh, Surface, write_polygons
 from .scene_text import Node, number
+from .weld import Comparison, Primvar, corners_of_points, odd_corners
 
 Array = npt.NDArray[Any]
 
@@ -78,7 +79,7 @@ def _holes(mesh: UsdGeom.Mesh, time: float, surface: Surface) -> list[int]:
     count = len(mesh.GetFaceVertexCountsAttr().Get(time) or [])
     if len(holes) and (int(holes.min()) < 0 or int(holes.max()) >= count):
         raise BadMesh(f"holeIndices names face {int(holes.max())}, but there are {count}")
-    return np.flatnonzero(np.isin(surface.faces, holes)).tolist()
+    return np.flatnonzero(np.isin(surface.face_numbers(), holes)).tolist() if len(holes) else []
 
 
 def _scheme(ctx: Context, mesh: UsdGeom.Mesh, surface: Surface, scheme: str) -> str:
@@ -86,7 +87,7 @@ def _scheme(ctx: Context, mesh: UsdGeom.Mesh, surface: Surface, scheme: str) -> 
     if word is None:
         ctx.report.unknown(mesh.GetPrim(), f"subdivisionScheme {scheme}", "catmullClark, loop, bilinear and none are; it is catmullClark")
         word = "catmull-clark"
-    if word == "loop" and len(surface.topology.counts) and not (surface.topology.counts == 3).all():
+    if word == "loop" and len(surface.topology.counts) and surface.topology.size != 3:
         ctx.report.approximated(mesh.GetPrim(), "the scheme loop", "it is catmull-clark: not all faces are triangles")
         word = "catmull-clark"
     return word
@@ -107,21 +108,22 @@ def seamless(surface: Surface, primvar: Primvar) -> bool:
     if not primvar.by_corner:
         return True
     topology = surface.topology
-    if primvar.index is None:
-        primvar.index = np.arange(len(topology.corners))
-    of_point = np.zeros(topology.point_count, np.int64)
-    of_point[topology.corners] = primvar.index
-    same = (primvar.values[of_point[topology.corners]] == primvar.values[primvar.index]).all()
+    mate = corners_of_points(topology.corners, topology.point_count)
+    same = not len(odd_corners(Comparison([primvar]), topology.corners, mate))
     if same:
-        primvar.index, primvar.by_corner = of_point, False
-    return bool(same)
+        of_point = np.maximum(mate, 0)
+        primvar.index, primvar.by_corner = of_point if primvar.index is None else primvar.index.take(of_point), False
+    return same
 
 
 def _groups(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], node: Node) -> list[tuple[str, Array]]:
     """Faces by material, as groups of the file; the materials of all but the first are written."""
-    owner = np.full(len(surface.faces), -1, np.int64)
+    numbers = surface.face_numbers()
+    if not subsets:
+        return [("", np.arange(len(numbers)))]
+    owner = np.full(len(numbers), -1, np.int64)
     for i, (_, faces, _) in enumerate(subsets):
-        owner[np.isin(surface.faces, faces)] = i
+        owner[np.isin(numbers, faces)] = i
     groups = [("", np.flatnonzero(owner < 0))]
     for i, (subset, _, look) in enumerate(subsets):
         faces = np.flatnonzero(owner == i)
@@ -144,7 +146,7 @@ def _write_file(ctx: Context, surface: Surface, groups: list[tuple[str, Array]],
         uvs = surface.uvs.values
         topology = surface.topology
         if surface.uvs.by_corner:
-            uv_corners = surface.uvs.index
+            uv_corners = np.arange(len(topology.corners)) if surface.uvs.index is None else surface.uvs.index
         else:
             uv_corners = topology.corners if surface.uvs.index is None else surface.uvs.index[topology.corners]
     if surface.attributes:

@@ -20,6 +20,8 @@ NIT_PER_ONE = 72983.0  # nits that show as 1 without an exposure (docs/conventio
 UNITS = {1e-9: "nm", 1e-6: "um", 1e-3: "mm", 1e-2: "cm", 1.0: "m", 1e3: "km", 0.0254: "in", 0.3048: "ft"}
 MAX_KEYS = 4096  # of one motion
 
+_CORNERS = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)])  # of a box: which end of each axis
+
 Matrix = npt.NDArray[np.float64]  # 4 × 4, of row vectors as USD has them
 
 
@@ -153,11 +155,12 @@ class Context:
         """Counts points into the bounds of the scene, for a camera that shows all of it."""
         if not len(points):
             return
-        low, high = np.min(points, axis=0), np.max(points, axis=0)
-        corners = np.array([[x, y, z, 1.0] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+        ends = np.stack([np.minimum.reduce(points, axis=0), np.maximum.reduce(points, axis=0)])
+        corners = np.ones((8, 4))
+        corners[:, :3] = ends[_CORNERS, (0, 1, 2)]
         world = (corners @ place.at(self.times.first))[:, :3]
-        self.bounds[0] = np.minimum(self.bounds[0], world.min(axis=0))
-        self.bounds[1] = np.maximum(self.bounds[1], world.max(axis=0))
+        np.minimum(self.bounds[0], world.min(axis=0), out=self.bounds[0])
+        np.maximum(self.bounds[1], world.max(axis=0), out=self.bounds[1])
 
     def keys(self, place: Place) -> list[float]:
         return self.times.of_samples(place.samples)

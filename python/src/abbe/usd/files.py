@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
+import dataclasses
 import os
 import re
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Union
 
@@ -16,6 +16,17 @@ import numpy as np
 from .scene_text import FileRef
 
 Buffer = Union[bytes, memoryview, "np.ndarray"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Stream:
+    """Bytes that are made when they are written, some at a time: those of a large mesh need not lie in memory."""
+
+    nbytes: int
+    blocks: Callable[[], Iterator[Buffer]]
+
+
+Part = Union[bytes, memoryview, "np.ndarray", Stream]
 _COMPARED = 8 << 20  # bytes; larger files are not compared with those that are there
 
 
@@ -24,13 +35,24 @@ def as_bytes(part: Buffer) -> bytes | memoryview:
     return np.ascontiguousarray(part).reshape(-1).view(np.uint8).data if isinstance(part, np.ndarray) else part
 
 
-def write_atomically(path: Path, parts: Iterable[Buffer]) -> None:
+def size_of(part: Part) -> int:
+    return len(part) if isinstance(part, bytes) else part.nbytes
+
+
+def pieces(parts: Iterable[Part]) -> Iterator[bytes | memoryview]:
+    """All bytes in order. A piece holds until the next one is asked for."""
+    for part in parts:
+        for piece in part.blocks() if isinstance(part, Stream) else (part,):
+            yield as_bytes(piece)
+
+
+def write_atomically(path: Path, parts: Iterable[Part]) -> None:
     """Writes a file under another name and renames it, so that nobody ever reads half of it. Raises OSError."""
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name[:40]}.", dir=path.parent)
     try:
         with os.fdopen(descriptor, "wb") as stream:
-            for part in parts:
-                stream.write(as_bytes(part))
+            for piece in pieces(parts):
+                stream.write(piece)
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(name, 0o666 & ~mask)
@@ -45,27 +67,24 @@ class SideFiles:
     """Files in memory until the scene is written. Equal ones are one file."""
 
     def __init__(self) -> None:
-        self.parts: dict[str, list[Buffer]] = {}
+        self.parts: dict[str, list[Part]] = {}
         self._by_content: dict[tuple[str, bytes], str] = {}
         self._stems: dict[str, int] = {}
 
-    def add(self, stem: str, extension: str, parts: Sequence[Buffer]) -> FileRef:
+    def add(self, stem: str, extension: str, parts: Sequence[Part]) -> FileRef:
         """A file named after `stem`, as far as file systems like it."""
-        kept = [p for p in parts if len(p)]
-        size = sum(p.nbytes if isinstance(p, (np.ndarray, memoryview)) else len(p) for p in kept)
-        key = None
-        if size <= _COMPARED:
-            digest = hashlib.blake2b(digest_size=16)
-            for part in kept:
-                digest.update(as_bytes(part))
-            key = (extension, digest.digest())
-            if key in self._by_content:
-                return FileRef(self._by_content[key], own=True)
-        name = self._free_name(stem, extension)
-        self.parts[name] = kept
-        if key:
-            self._by_content[key] = name
-        return FileRef(name, own=True)
+        if sum(size_of(part) for part in parts) > _COMPARED:
+            name = self._free_name(stem, extension)
+            self.parts[name] = list(parts)
+            return FileRef(name, own=True)
+        content = (extension, b"".join(pieces(parts)))
+        if content not in self._by_content:
+            name = self._by_content[content] = self._free_name(stem, extension)
+            self.parts[name] = [content[1]]
+        return FileRef(self._by_content[content], own=True)
+
+    def content(self, name: str) -> bytes:
+        return b"".join(bytes(piece) for piece in pieces(self.parts[name]))
 
     def _free_name(self, stem: str, extension: str) -> str:
         plain = re.sub(r"[^A-Za-z0-9._-]+", "_", stem).strip("._") or "file"

@@ -41,7 +41,7 @@ def cone_profile(ctx: Context, prim: Usd.Prim, candela: float, angle: float, sof
 
 def _content(ctx: Context, ref: FileRef) -> str:
     if ref.own:
-        return b"".join(bytes(p) for p in ctx.files.parts[ref.path]).decode("latin-1")
+        return ctx.files.content(ref.path).decode("latin-1")
     path = Path(ref.path)
     if path.stat().st_size > MAX_BYTES:
         raise ValueError("it has more than 64 MB")

@@ -19,10 +19,14 @@ from .scene_text import Node
 Array = npt.NDArray[Any]
 
 
-def subsets_of(ctx: Context, mesh: UsdGeom.Mesh, face_count: int) -> list[tuple[UsdGeom.Subset, Array]]:
+def subsets_of(ctx: Context, mesh: UsdGeom.Mesh) -> list[tuple[UsdGeom.Subset, Array]]:
     """Subsets with materials, and their faces. Raises BadMesh."""
     found = []
-    for subset in UsdShade.MaterialBindingAPI(mesh.GetPrim()).GetMaterialBindSubsets():
+    prim = mesh.GetPrim()
+    holds = prim.IsInstanceProxy() or bool(prim.GetAllChildrenNames())
+    subsets = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets() if holds else []
+    face_count = len(mesh.GetFaceVertexCountsAttr().Get(ctx.times.first) or []) if subsets else 0
+    for subset in subsets:
         if subset.GetElementTypeAttr().Get() != UsdGeom.Tokens.face:
             ctx.report.left_out(subset.GetPrim(), "a subset that is none of faces", "materials belong to faces")
             continue
@@ -45,11 +49,12 @@ def _polygon_parts(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.S
     path = str(surface.prim.GetPath())
     if not subsets:
         return [(path, surface, look)]
-    total = int(surface.faces.max()) + 1 if len(surface.faces) else 0
+    numbers = surface.face_numbers()
+    total = int(numbers.max()) + 1 if len(numbers) else 0
     owner = np.full(total, -1, np.int64)
     for i, (_, faces, _) in enumerate(subsets):
         owner[faces[faces < total]] = i
-    owner = owner[surface.faces]
+    owner = owner[numbers]
     if not (owner >= 0).any():
         return [(path, surface, look)]
     parts = []
@@ -66,8 +71,7 @@ def convert_mesh(ctx: Context, prim: Usd.Prim, place: Place, look: Look, look_of
     mesh = UsdGeom.Mesh(prim)
     scheme = str(mesh.GetSubdivisionSchemeAttr().Get() or "catmullClark")
     try:
-        counts = mesh.GetFaceVertexCountsAttr().Get(ctx.times.first)
-        subsets = [(s, faces, look_of_subset(s)) for s, faces in subsets_of(ctx, mesh, len(counts or []))]
+        subsets = [(s, faces, look_of_subset(s)) for s, faces in subsets_of(ctx, mesh)]
         looks = [look, *(own for _, _, own in subsets)]
         displaced = next((one.displacement for one in looks if one.displacement), None)
         is_cage = scheme != "none" or displaced is not None

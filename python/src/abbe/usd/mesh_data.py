@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from typing import Any
 
@@ -14,23 +15,13 @@ from . import ply
 from .context import Context, as_float
 from .materials import Look
 from .scene_text import Node, number
+from .weld import Primvar, blocks, weld
 
 INLINE = 24  # points of a mesh that is written into the scene
 LEAST_CORNERS = 3
+FEW = 4096  # numbers, of which an array of answers is nothing
 
 Array = npt.NDArray[Any]
-
-
-@dataclasses.dataclass
-class Primvar:
-    """Numbers of a mesh, brought to its points or to its corners."""
-
-    values: Array  # rows
-    index: Array | None  # of each point, or of each corner; None: rows are in order
-    by_corner: bool
-
-    def at_points(self, count: int) -> Array:
-        return self.values[:count] if self.index is None else self.values[self.index]
 
 
 @dataclasses.dataclass
@@ -43,14 +34,28 @@ class Topology:
     def starts(self) -> Array:
         return np.cumsum(self.counts, dtype=np.int64) - self.counts
 
+    @functools.cached_property
+    def least(self) -> int:
+        """Corners of the smallest face."""
+        return int(self.counts.min()) if len(self.counts) else 0
+
+    @functools.cached_property
+    def size(self) -> int | None:
+        """Corners of each face, where all have as many."""
+        return self.least if len(self.counts) and self.least == int(self.counts.max()) else None
+
 
 class BadMesh(Exception):
     """What is wrong with a mesh."""
 
 
 def all_finite(values: Array) -> bool:
-    """By a sum, which is not finite if one of them is not: without an array of answers."""
-    return math.isfinite(float(np.sum(values, dtype=np.float64)))
+    """By a sum, which is not finite if one of them is not: without an array of answers. Large numbers may add up to infinity."""
+    if values.size > FEW:
+        with np.errstate(all="ignore"):
+            if math.isfinite(np.add.reduce(values, axis=None)):
+                return True
+    return bool(np.isfinite(values).all())
 
 
 def read_points(ctx: Context, geometry: Any, time: float) -> Array:
@@ -69,8 +74,9 @@ def read_topology(mesh: UsdGeom.Mesh, time: float, point_count: int) -> Topology
     """Faces, checked. Raises BadMesh."""
     counts = np.asarray(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int32)
     corners = np.asarray(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int32)
-    if len(counts) and int(counts.min()) < 0:
-        raise BadMesh(f"face {int(counts.argmin())} has {int(counts.min())} corners")
+    topology = Topology(counts, corners, point_count)
+    if topology.least < 0:
+        raise BadMesh(f"face {int(counts.argmin())} has {topology.least} corners")
     total = int(counts.sum(dtype=np.int64))
     if total != len(corners):
         raise BadMesh(f"faceVertexCounts asks for {total} corners, faceVertexIndices has {len(corners)}")
@@ -78,16 +84,18 @@ def read_topology(mesh: UsdGeom.Mesh, time: float, point_count: int) -> Topology
         low, high = int(corners.min()), int(corners.max())
         if low < 0 or high >= point_count:
             raise BadMesh(f"a face has point {low if low < 0 else high}, but there are {point_count}")
-    return Topology(counts, corners, point_count)
+    return topology
 
 
 def moving_points(ctx: Context, geometry: Any, prim: Usd.Prim) -> list[tuple[float, Array]]:
     """Points at each key: from samples, else along velocities. Raises BadMesh."""
     times = ctx.times
+    if times.last <= times.first:
+        return [(times.first, read_points(ctx, geometry, times.first))]
     samples = list(geometry.GetPointsAttr().GetTimeSamples())
     velocity = geometry.GetVelocitiesAttr()
     keys = times.of_samples(samples)
-    if times.last > times.first and len(velocity.GetTimeSamples() or []) + bool(velocity.HasAuthoredValue()) > 0:
+    if len(velocity.GetTimeSamples() or []) + bool(velocity.HasAuthoredValue()) > 0:
         between = [t for t in samples if times.first < t < times.last]
         keys = sorted({times.first, *between, times.last})
         base = (times.first + times.last) / 2 if not times.animated else times.first
@@ -125,8 +133,10 @@ def to_primvar(name: str, values: Array, indices: Array | None, interpolation: s
         return Primvar(rows, np.full(topology.point_count, first, np.int32), False)
     if interpolation == "uniform":
         of_face = np.arange(face_count, dtype=np.int32) if indices is None else indices[:face_count]
-        return Primvar(rows, np.repeat(of_face, topology.counts), True)
+        return Primvar(rows, np.repeat(of_face, topology.size or topology.counts), True)
     if interpolation == "faceVarying":
+        if indices is not None and len(rows) >= topology.point_count and np.array_equal(indices[:corner_count], topology.corners):
+            return Primvar(rows, None, False)  # as by points, said in another way
         return Primvar(rows[:corner_count] if indices is None else rows, None if indices is None else indices[:corner_count], True)
     return Primvar(rows, indices, False)
 
@@ -150,9 +160,8 @@ def read_primvar(prim: Usd.Prim, name: str, time: float, topology: Topology) -> 
 
 def flipped(topology: Topology) -> Array:
     """For each corner, which one is there when all faces are turned around."""
-    if len(topology.counts) and (topology.counts == topology.counts[0]).all():
-        n = int(topology.counts[0])
-        order: Array = np.arange(len(topology.corners)).reshape(-1, n)[:, ::-1].reshape(-1)
+    if topology.size is not None:
+        order: Array = np.arange(len(topology.corners)).reshape(-1, topology.size)[:, ::-1].reshape(-1)
         return order
     starts = np.repeat(topology.starts, topology.counts)
     lengths = np.repeat(topology.counts, topology.counts)
@@ -173,43 +182,6 @@ def of_faces(topology: Topology, keep: Array) -> tuple[Topology, Array]:
     return Topology(topology.counts[keep], topology.corners[kept_corners], topology.point_count), kept_corners
 
 
-def _words(rows: Array) -> list[Array]:
-    """Rows of single precision as columns of bits, two numbers at a time where that can be."""
-    if rows.shape[1] == 2:
-        return [np.ascontiguousarray(rows, np.float32).view(np.uint64).reshape(-1)]
-    return [np.ascontiguousarray(rows[:, i], np.float32).view(np.uint32) for i in range(rows.shape[1])]
-
-
-def weld(topology: Topology, primvars: list[Primvar]) -> tuple[Array, Array]:
-    """Splits points at whose corners primvars differ. Returns the vertex of each corner, and one corner of each vertex.
-
-    A vertex is made for each point from one of its corners. The few corners that disagree with it are sorted out after.
-    """
-    corners = topology.corners
-    representative = np.full(topology.point_count, -1, np.int32)
-    representative[corners] = np.arange(len(corners), dtype=np.int32)
-    mine = representative[corners]
-    differs = np.zeros(len(corners), bool)
-    for primvar in primvars:
-        index = primvar.index
-        a, b = (None, mine) if index is None else (index, index[mine])
-        for column in _words(primvar.values):
-            differs |= (column if a is None else column[a]) != column[b]
-    used = representative[representative >= 0]
-    vertex = np.cumsum(representative >= 0) - 1
-    vertex_of_corner = vertex[corners]
-    odd = np.flatnonzero(differs)
-    if len(odd):
-        columns = [corners[odd].astype(np.float64)[:, None]]
-        for p in primvars:
-            columns.append(p.values[odd if p.index is None else p.index[odd]].astype(np.float64))
-        _, first, inverse = np.unique(np.hstack(columns) + 0.0, axis=0, return_index=True, return_inverse=True)
-        vertex_of_corner = vertex_of_corner.copy()
-        vertex_of_corner[odd] = len(used) + inverse.reshape(-1)
-        used = np.concatenate([used, odd[first]])
-    return vertex_of_corner.astype(np.int32), used
-
-
 @dataclasses.dataclass
 class Surface:
     """A mesh as it was read: all that the parts of it share."""
@@ -220,7 +192,10 @@ class Surface:
     uvs: Primvar | None
     normals: list[Primvar]  # one for each key, or none
     attributes: dict[str, Primvar]
-    faces: Array  # the numbers that the faces have in the stage
+    faces: Array | None = None  # the numbers that the faces have in the stage; None: as they are
+
+    def face_numbers(self) -> Array:
+        return np.arange(len(self.topology.counts)) if self.faces is None else self.faces
 
     def by_corner(self) -> list[Primvar]:
         found = [p for p in (self.uvs, *self.normals, *self.attributes.values()) if p is not None]
@@ -254,8 +229,8 @@ def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: b
     if not len(topology.corners) or not len(points[0][1]):
         ctx.report.left_out(prim, "a mesh without faces", "it shows nothing")
         return None
-    small = topology.counts < LEAST_CORNERS
-    if small.any():
+    gone = np.flatnonzero(topology.counts < LEAST_CORNERS) if topology.least < LEAST_CORNERS else np.zeros(0, np.int64)
+    if len(gone):
         ctx.report.left_out(prim, "faces of fewer than three corners", "they have no area")
     uv_names = [look.uv for look in looks if look.uv]
     uvs = None
@@ -278,16 +253,15 @@ def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: b
             values.values = values.values[:, :size]
             attributes[name] = values
     normals = [] if is_cage else _read_normals(mesh, [key for key, _ in points], topology)
-    surface = Surface(prim, topology, points, uvs, normals, attributes, np.arange(len(topology.counts)))
-    gone = np.flatnonzero(small)
+    surface = Surface(prim, topology, points, uvs, normals, attributes)
     if not is_cage:
         holes = np.asarray(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
         if len(holes) and (int(holes.min()) < 0 or int(holes.max()) >= len(topology.counts)):
             raise BadMesh(f"holeIndices names face {int(holes.max())}, but there are {len(topology.counts)}")
-        gone = np.union1d(gone, holes).astype(np.int64)
+        gone = np.union1d(gone, holes).astype(np.int64) if len(holes) else gone
     if len(gone):
         surface.topology, kept = without_faces(topology, gone)
-        surface.faces = np.delete(surface.faces, gone)
+        surface.faces = np.delete(np.arange(len(topology.counts)), gone)
         _select(surface, kept)
     if mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded:
         order = flipped(surface.topology)
@@ -316,7 +290,7 @@ def part(surface: Surface, faces: Array) -> Surface:
 
     normals = [n for n in (taken(p) for p in surface.normals) if n is not None]
     attributes = {k: v for k, v in ((k, taken(p)) for k, p in surface.attributes.items()) if v is not None}
-    return Surface(surface.prim, topology, surface.points, taken(surface.uvs), normals, attributes, surface.faces[faces])
+    return Surface(surface.prim, topology, surface.points, taken(surface.uvs), normals, attributes, surface.face_numbers()[faces])
 
 
 def vertices(surface: Surface) -> tuple[Array, Array | None, Array | None]:
@@ -324,29 +298,31 @@ def vertices(surface: Surface) -> tuple[Array, Array | None, Array | None]:
     topology = surface.topology
     split = surface.by_corner()
     if split:
-        vertex_of_corner, corner_of_vertex = weld(topology, split)
-        return vertex_of_corner, topology.corners[corner_of_vertex], corner_of_vertex
+        return weld(topology.corners, topology.point_count, split)
     used = np.zeros(topology.point_count, bool)
-    used[topology.corners] = True
+    for block in blocks(len(topology.corners)):
+        used[topology.corners[block]] = True
     if used.all():
         return topology.corners, None, None
     number_of = np.cumsum(used) - 1
     return number_of[topology.corners].astype(np.int32), np.flatnonzero(used), None
 
 
-def _columns(surface: Surface, key: int, point: Array | None, corner: Array | None) -> list[tuple[str, ply.Floats]]:
+def _columns(surface: Surface, key: int, point: Array | None, corner: Array | None) -> list[ply.Group]:
+    """What vertices have, by names and functions that make the rows of some of them."""
     positions = surface.points[key][1]
-    positions = positions if point is None else positions[point]
-    columns = [("x", positions[:, 0]), ("y", positions[:, 1]), ("z", positions[:, 2])]
+    count = len(positions) if point is None else len(point)
+    groups: list[ply.Group] = [(["x", "y", "z"], count, lambda b: positions[b] if point is None else positions.take(point[b], axis=0))]
 
     def add(primvar: Primvar, names: list[str]) -> None:
         if primvar.by_corner:
             assert corner is not None
-            rows = primvar.values[corner if primvar.index is None else primvar.index[corner]]
+            groups.append((names, count, lambda b: primvar.at_corners(corner[b])))
+        elif point is None and primvar.index is None:
+            groups.append((names, count, lambda b: primvar.values[b]))
         else:
             rows = primvar.at_points(surface.topology.point_count)
-            rows = rows if point is None else rows[point]
-        columns.extend((name, rows[:, i]) for i, name in enumerate(names))
+            groups.append((names, count, lambda b: rows[b] if point is None else rows.take(point[b], axis=0)))
 
     if surface.normals:
         add(surface.normals[min(key, len(surface.normals) - 1)], ["nx", "ny", "nz"])
@@ -354,7 +330,7 @@ def _columns(surface: Surface, key: int, point: Array | None, corner: Array | No
         add(surface.uvs, ["u", "v"])
     for name, primvar in surface.attributes.items():
         add(primvar, ["red", "green", "blue"] if name == "color" else [name])
-    return columns
+    return groups
 
 
 def write_polygons(ctx: Context, surface: Surface, stem: str, node: Node, keep_points: bool = False) -> None:
@@ -362,34 +338,35 @@ def write_polygons(ctx: Context, surface: Surface, stem: str, node: Node, keep_p
     corners, point, corner = (surface.topology.corners, None, None) if keep_points else vertices(surface)
     small = len(surface.points[0][1] if point is None else point) <= INLINE and not surface.normals
     for key, (time, _) in enumerate(surface.points):
-        columns = _columns(surface, key, point, corner)
+        groups = _columns(surface, key, point, corner)
         at = node if len(surface.points) == 1 else node.child("at", number(ctx.times.seconds(time)), "s")
         if small:
-            at.rows("points", _shortest([c for _, c in columns[:3]]))
+            every = slice(0, INLINE)
+            at.rows("points", _shortest(groups[0][2](every)))
             if key == 0:
-                _write_inline(surface, corners, dict(columns), node)
+                _write_inline(surface, corners, {names[0]: rows(every) for names, _, rows in groups}, node)
             continue
-        ref = ctx.files.add(stem if key == 0 else f"{stem}.{key}", "ply", ply.mesh(columns, surface.topology.counts, corners))
+        parts = ply.mesh(groups, surface.topology.counts, corners, surface.topology.size)
+        ref = ctx.files.add(stem if key == 0 else f"{stem}.{key}", "ply", parts)
         if at is node:
             node.file(ref)
         else:
             at.child("file").file(ref)
 
 
-def _shortest(columns: list[ply.Floats]) -> list[list[float]]:
-    return [[as_float(x) + 0.0 for x in row] for row in zip(*columns, strict=True)]
+def _shortest(rows: ply.Floats) -> list[list[float]]:
+    return [[as_float(x) + 0.0 for x in row] for row in rows]
 
 
-def _write_inline(surface: Surface, corners: Array, columns: dict[str, ply.Floats], node: Node) -> None:
+def _write_inline(surface: Surface, corners: Array, rows: dict[str, ply.Floats], node: Node) -> None:
     faces = node.child("faces")
     starts, counts = surface.topology.starts, surface.topology.counts
     faces.children = [Node("-").numbers(corners[s : s + n]) for s, n in zip(starts, counts, strict=True)]
     if surface.uvs is not None:
-        node.rows("uvs", _shortest([columns["u"], columns["v"]]))
+        node.rows("uvs", _shortest(rows["u"]))
     for name in surface.attributes:
         if name == "color":
             attribute = node.child("attribute").text("color")
-            rows = _shortest([columns[c] for c in ("red", "green", "blue")])
-            attribute.children = [Node("-").numbers(row) for row in rows]
+            attribute.children = [Node("-").numbers(row) for row in _shortest(rows["red"])]
         else:
-            node.child("attribute").text(name).numbers(as_float(x) for x in columns[name])
+            node.child("attribute").text(name).numbers(as_float(x) for x in rows[name][:, 0])

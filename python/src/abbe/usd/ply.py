@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .files import Buffer
+from .files import Buffer, Part, Stream
+from .weld import BLOCK, blocks
 
 Floats = npt.NDArray[np.float32]
 Ints = npt.NDArray[np.int32]
+Group = tuple[list[str], int, Callable[[slice], Floats]]  # names of properties, how many rows, and the rows of a block
 
 
 def _header(count: int, columns: Iterable[tuple[str, str]], tail: Iterable[str]) -> bytes:
@@ -41,7 +44,24 @@ def strands(columns: Sequence[tuple[str, npt.NDArray[np.generic]]], counts: Ints
     return [_header(len(columns[0][1]), kinds, tail), _table(columns).tobytes(), counts.astype("<u4").tobytes()]
 
 
+def _even_faces(corners: Ints, size: int) -> Stream:
+    """Faces that have as many corners each, up to 255."""
+    kind = np.dtype([("length", "u1"), ("corners", "<i4", (size,))])
+    faces = np.ascontiguousarray(corners, "<i4").reshape(-1, size)
+
+    def made() -> Iterator[Buffer]:
+        rows = np.empty(min(len(faces), BLOCK), kind)
+        rows["length"] = size
+        for block in blocks(len(faces)):
+            some = rows[: block.stop - block.start]
+            some["corners"] = faces[block]
+            yield some
+
+    return Stream(len(faces) * kind.itemsize, made)
+
+
 def _face_bytes(counts: Ints, corners: Ints) -> tuple[str, npt.NDArray[np.uint8]]:
+    """Faces of any lengths, and the type of these."""
     corners = np.ascontiguousarray(corners, "<i4")
     if len(counts) and int(counts.max()) > 255:
         out = np.empty(4 * (len(counts) + len(corners)), np.uint8)
@@ -51,12 +71,6 @@ def _face_bytes(counts: Ints, corners: Ints) -> tuple[str, npt.NDArray[np.uint8]
         rest[starts] = False
         words[starts], words[rest] = counts, corners
         return "uint", out
-    first = int(counts[0]) if len(counts) else 3
-    if bool((counts == first).all()):
-        rows = np.empty((len(counts), 1 + 4 * first), np.uint8)
-        rows[:, 0] = first
-        rows[:, 1:] = corners.view(np.uint8).reshape(len(counts), 4 * first)
-        return "uchar", rows.reshape(-1)
     starts = 4 * (np.cumsum(counts, dtype=np.int64) - counts) + np.arange(len(counts))
     out = np.empty(len(counts) + 4 * len(corners), np.uint8)
     rest = np.ones(len(out), bool)
@@ -65,15 +79,26 @@ def _face_bytes(counts: Ints, corners: Ints) -> tuple[str, npt.NDArray[np.uint8]
     return "uchar", out
 
 
-def mesh(columns: Sequence[tuple[str, Floats]], counts: Ints, corners: Ints) -> list[Buffer]:
-    """A polygon mesh: columns x y z and others of its vertices, faces by the number and the indices of their corners."""
-    vertices = np.empty((len(columns[0][1]), len(columns)), "<f4")
-    for i, (_, values) in enumerate(columns):
-        vertices[:, i] = values
-    length, faces = _face_bytes(counts, corners)
+def mesh(groups: Sequence[Group], counts: Ints, corners: Ints, size: int | None) -> list[Part]:
+    """A polygon mesh: x y z and other properties of its vertices, faces by the number and the indices of their corners.
+
+    `size`: corners of each face, where all have as many.
+    """
+    names = [name for group in groups for name in group[0]]
+    count = groups[0][1]
+
+    def vertices() -> Iterator[Buffer]:
+        rows = np.empty((min(count, BLOCK), len(names)), "<f4")
+        for block in blocks(count):
+            some, at = rows[: block.stop - block.start], 0
+            for own, _, values in groups:
+                some[:, at : at + len(own)] = values(block)
+                at += len(own)
+            yield some
+
+    length, faces = ("uchar", _even_faces(corners, size)) if size is not None and size <= 255 else _face_bytes(counts, corners)
     tail = [f"element face {len(counts)}", f"property list {length} int vertex_indices"]
-    header = _header(len(vertices), [(name, "float") for name, _ in columns], tail)
-    return [header, vertices.reshape(-1), faces]
+    return [_header(count, [(name, "float") for name in names], tail), Stream(4 * count * len(names), vertices), faces]
 
 
 def _lines(prefix: str, rows: npt.NDArray[np.generic]) -> str:
@@ -86,7 +111,7 @@ def cage(
     counts: Ints,
     corners: Ints,
     uvs: Floats | None,
-    uv_corners: Ints | None,
+    uv_corners: npt.NDArray[np.integer[Any]] | None,
     groups: Sequence[tuple[str, npt.NDArray[np.intp]]],
     tags: Sequence[str],
 ) -> list[Buffer]:

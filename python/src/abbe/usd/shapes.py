@@ -116,8 +116,9 @@ def _capsule(ctx: Context, prim: Usd.Prim, node: Node) -> float | None:
             a, b = row * AROUND + i, row * AROUND + (i + 1) % AROUND
             faces.append((a, b, b + AROUND, a + AROUND))
     corners: npt.NDArray[np.int32] = np.array(faces, np.int32).reshape(-1)
-    columns = [(n, v) for n, v in zip(("x", "y", "z", "nx", "ny", "nz"), (*points.T, *normals.T), strict=True)]
-    ref = ctx.files.add(str(prim.GetPath()), "ply", ply.mesh(columns, np.full(len(faces), 4, np.int32), corners))
+    rows = np.hstack([points, normals])
+    groups: list[ply.Group] = [(["x", "y", "z", "nx", "ny", "nz"], len(rows), lambda b: rows[b])]
+    ref = ctx.files.add(str(prim.GetPath()), "ply", ply.mesh(groups, np.full(len(faces), 4, np.int32), corners, 4))
     node.word("mesh").file(ref)
     node.remark(
         ctx.report.approximated(prim, "a capsule", f"a smooth mesh of {len(faces)} faces, within {1 - math.cos(math.pi / AROUND):.1%} of its radius")
