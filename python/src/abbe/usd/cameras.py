@@ -119,7 +119,8 @@ def choose_camera(ctx: Context, s: Settings) -> Usd.Prim | None:
     cameras = [p for p in ctx.stage.Traverse() if p.IsA(UsdGeom.Camera)]  # not those in instances: there may be many
     if not wanted:
         return cameras[0] if cameras else None
-    named = ctx.stage.GetPrimAtPath(wanted) if Sdf.Path.IsValidPathString(wanted) else None
+    path = "/" + wanted.strip("/")  # cameras of the scene are called by it without the slash
+    named = ctx.stage.GetPrimAtPath(path) if Sdf.Path.IsValidPathString(path) else None
     found = [named] if named is not None and named.IsValid() and named.IsA(UsdGeom.Camera) else []
     found = found or [p for p in cameras if p.GetName() == wanted.strip("/")]
     if found:

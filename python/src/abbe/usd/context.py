@@ -12,6 +12,11 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Gf, Usd, UsdGeom
 
+try:
+    from pxr import Ts
+except ImportError:  # before OpenUSD 25.05, which has no splines
+    Ts = None
+
 from .files import SideFiles
 from .report import Report
 from .scene_text import Node, number
@@ -19,6 +24,8 @@ from .scene_text import Node, number
 NIT_PER_ONE = 72983.0  # nits that show as 1 without an exposure (docs/conventions.md)
 UNITS = {1e-9: "nm", 1e-6: "um", 1e-3: "mm", 1e-2: "cm", 1.0: "m", 1e3: "km", 0.0254: "in", 0.3048: "ft"}
 MAX_KEYS = 4096  # of one motion
+CURVED = 16  # straight pieces of a span of a spline
+STEP = 1e-3  # of a time code, in which something jumps that is held before
 
 _CORNERS = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)])  # of a box: which end of each axis
 
@@ -87,7 +94,7 @@ class Place:
             while self._parent is not None and self._parent._parent is not None:
                 self._parent = self._parent._parent
             self.samples = []
-        own = xformable.GetTimeSamples() if xformable.TransformMightBeTimeVarying() else []
+        own = sample_times(xformable) if xformable.TransformMightBeTimeVarying() else []
         if len(own) > 1:
             self.samples = sorted({*self.samples, *own})
             self._xformable = xformable
@@ -100,6 +107,31 @@ class Place:
             local = self._fixed if self._xformable is None else matrix_of(self._xformable.GetLocalTransformation(time))
             self._cache[key] = local if self._parent is None else local @ self._parent.at(time)
         return self._cache[key]
+
+
+def spline_times(attribute: Any) -> list[float]:
+    """Times between which an attribute with a spline is nearly straight. A step is one over a thousandth of a frame."""
+    if not hasattr(attribute, "HasSpline") or not attribute.HasSpline():
+        return []
+    knots = attribute.GetSpline().GetKnots()
+    times = sorted(float(time) for time in knots)
+    found = times[-1:]
+    for a, b in itertools.pairwise(times):
+        kind = knots[a].GetNextInterpolation()
+        if kind == Ts.InterpHeld:
+            found += [a, max(a, b - STEP)]
+        else:
+            pieces = 1 if kind == Ts.InterpLinear else CURVED
+            found += [a + (b - a) * i / pieces for i in range(pieces)]
+    return found
+
+
+def sample_times(xformable: Any) -> list[float]:
+    """Of the operations of a prim: those of samples, and those of splines."""
+    times = set(xformable.GetTimeSamples())
+    for operation in xformable.GetOrderedXformOps():
+        times.update(spline_times(operation.GetAttr()))
+    return sorted(times)
 
 
 class Context:

@@ -386,7 +386,8 @@ def _remarks(ctx: Context, prim: Usd.Prim) -> None:
     api = UsdLux.LightAPI(prim)
     filters = api.GetFiltersRel().GetTargets() if api.GetFiltersRel() else []
     for target in filters:
-        kind = prim.GetStage().GetPrimAtPath(target).GetTypeName() or "of no type"
+        named = prim.GetStage().GetPrimAtPath(target)
+        kind = (named.GetTypeName() or "of no type") if named.IsValid() else "not there"
         ctx.report.left_out(prim, f"the light filter {target} ({kind})", "lights have no filters")
     for name in ("lightLink", "shadowLink"):
         collection = Usd.CollectionAPI(prim, name)

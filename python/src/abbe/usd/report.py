@@ -32,6 +32,7 @@ class Remark:
     layer: str  # the strongest one that has an opinion on it
     what: str
     why: str
+    file: str = ""  # the path of that layer; empty where it is in none
 
     @property
     def is_error(self) -> bool:
@@ -44,14 +45,17 @@ class Remark:
         return f"{kind} {self.code}: {place}{self.what}{verb}: {self.why}"
 
 
-def strongest_layer(prim: Any) -> str:
-    """The file with the strongest opinion on a prim; empty where there is none."""
+def strongest_layer(prim: Any) -> tuple[str, str]:
+    """Name and path of the layer with the strongest opinion on a prim; empty where there is none."""
     if prim is None or not prim.IsValid():
-        return ""
+        return "", ""
     stack = prim.GetPrimStack()
     if not stack and prim.IsInPrototype() and prim.GetParent().IsValid():
         return strongest_layer(prim.GetParent())
-    return str(stack[0].layer.GetDisplayName() or stack[0].layer.identifier) if stack else ""
+    if not stack:
+        return "", ""
+    layer = stack[0].layer
+    return str(layer.GetDisplayName() or layer.identifier), str(layer.realPath)
 
 
 class Report:
@@ -81,7 +85,8 @@ class Report:
 
     def _add(self, code: str, prim: Any, what: str, why: str) -> str:
         path = "" if prim is None else str(prim.GetPath())
-        remark = Remark(code, path, strongest_layer(prim), what, why)
+        layer, file = strongest_layer(prim)
+        remark = Remark(code, path, layer, what, why, file)
         key = (code, what, why)
         self.repeated[key] = self.repeated.get(key, 0) + 1
         if self.repeated[key] <= SHOWN:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from pxr import Sdf, Usd, UsdShade, UsdVol
 
 from .assets import resolve_asset
@@ -108,4 +109,6 @@ def convert_volume(ctx: Context, prim: Usd.Prim, place: Place, material: UsdShad
     if len(ctx.keys(place)) > 1:
         ctx.report.approximated(prim, "a volume that moves", "it stands as it is when the shutter opens")
     still = Place(None, fixed=place.at(ctx.times.first))
-    return [node] if write_transform(ctx, node, still, prim) else []
+    # Files of volumes are in metres, whatever the scene counts in.
+    size = ctx.metres_per_scene_unit
+    return [node] if write_transform(ctx, node, still, prim, np.diag([size, size, size, 1.0])) else []
