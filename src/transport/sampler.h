@@ -6,8 +6,8 @@
 #include "math/sobol.h"
 #include "math/vec.h"
 #include "render/technique.h"
-#include "transport/pixel_square.h"
 
+#include <array>
 #include <bit>
 
 namespace abbe {
@@ -18,6 +18,37 @@ struct VertexSample {
     Vec2 bsdf;  // which direction
     float pick; // which light
     float lobe; // which lobe
+};
+
+// What each of the 4 × 4 pixels of a square adds to the digits of a point that all of them share, before its digits are
+// scrambled alike for all. Each pixel then has a scrambled Sobol sequence as it would have by itself; together they
+// have one point in each of as many strata as there are points, so that what the points of one pixel leave out its
+// neighbours have, and the mean over the square errs less than pixels by themselves would have it [Ahmed2020].
+//
+// A digit is added where an odd number of the place's four bits are among those of its row: a digital shift, which
+// keeps every net. Of any four rows in succession none is a sum of the others, hence the strata with any power of two
+// of samples; which rows was found by search (docs/decisions/042-squares-of-pixels.md).
+class PixelSquare {
+  public:
+    static constexpr int kSide = 4;
+
+    // Place of a pixel in its square: x and y by turns, so that the first four are the first 2 × 2.
+    static constexpr std::size_t place(int x, int y) {
+        return static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2);
+    }
+    // Of dimensions 8 `group` and on, the highest digit in the lowest bit as sobolBits() has them.
+    static UInt8 shift(std::size_t place, int group) {
+        return *reinterpret_cast<const UInt8*>(kShifts.digits[place].data() + 8 * group);
+    }
+    // Of the number of the eighth that the hero is in.
+    static std::uint32_t heroShift(std::size_t place) { return kShifts.hero[place]; }
+
+  private:
+    struct Shifts {
+        alignas(32) std::array<std::array<std::uint32_t, kSobolDimensions>, kSide * kSide> digits{};
+        std::array<std::uint32_t, kSide * kSide> hero{};
+    };
+    static const Shifts kShifts;
 };
 
 // Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first 24 dimensions
@@ -31,7 +62,7 @@ struct VertexSample {
 // of them is the hero then follows from the same point, as its place in the dimension that makes a (0, 2)-sequence of
 // it. So both are stratified by themselves and as one number (docs/decisions/037-paired-wavelengths.md).
 //
-// The pixels of a square divide the strata of the joint dimensions among them (transport/pixel_square.h).
+// The pixels of a square divide the strata of the joint dimensions among them (PixelSquare).
 //
 // Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
 // every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
