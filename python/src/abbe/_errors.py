@@ -29,8 +29,8 @@ class Diagnostic:
 
     @classmethod
     def _of(cls, record: tuple[Any, ...]) -> Diagnostic:
-        *head, notes, remedy = record
-        return cls(*head, tuple(notes), remedy)
+        severity, code, message, file, line, column, end_line, end_column, label, notes, remedy = record
+        return cls(severity, code, message, file, line, column, end_line, end_column, label, tuple(notes), remedy)
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}:{self.column}: " if self.file else ""

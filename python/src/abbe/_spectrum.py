@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,12 +39,12 @@ class Spectrum:
         asked = np.ascontiguousarray(wavelengths, dtype=np.float64)
         if not np.isfinite(asked).all():
             raise ValueError("a wavelength is not finite")
-        return self._handle.at(asked).reshape(np.shape(wavelengths))  # type: ignore[no-any-return]
+        return self._handle.at(asked).reshape(np.shape(wavelengths))
 
     @property
     def xyz(self) -> tuple[float, float, float]:
         """∫ s (x̄, ȳ, z̄) dλ / ∫ ȳ dλ with the CIE 1931 2° observer: a spectrum that is 1 everywhere has Y = 1."""
-        return self._handle.xyz()  # type: ignore[no-any-return]
+        return self._handle.xyz()
 
     def under(self, light: Spectrum | str) -> tuple[float, float, float]:
         """XYZ of this reflectance in a light, whose white has Y = 1."""
@@ -80,7 +80,7 @@ def color(value: Any, *, space: str = "lin_rec709_scene", light: Spectrum | str 
     curve = value if isinstance(value, Spectrum) else spectrum(value)
     if curve.role in ("emission", "tint", "shape"):
         x, y, z = curve.xyz
-        xyz: Sequence[float] = (x / y, 1.0, z / y)
+        xyz = (x / y, 1.0, z / y)
     else:
         xyz = curve.under(light)
-    return _abbe.rgb_of_xyz(tuple(xyz), space)  # type: ignore[no-any-return]
+    return _abbe.rgb_of_xyz(xyz, space)

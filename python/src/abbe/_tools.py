@@ -41,7 +41,7 @@ def _run(words: Sequence[str]) -> tuple[int, list[Any]]:
 def _options(options: dict[str, Any]) -> list[str]:
     """`samples=64` is `--samples 64`, `size=(64, 48)` is `--size 64x48`, True a flag, a list a flag for each, a dict one of `key=value` for
     each."""
-    words = []
+    words: list[str] = []
     for name, value in options.items():
         flag = "--" + name.rstrip("_").replace("_", "-")
         if isinstance(value, dict):
