@@ -20,6 +20,6 @@ if [[ ${WHEEL:-} == plain ]]; then
     ls "$folder"/plain/*.whl
     exit
 fi
-"$tools/bin/auditwheel" repair "$folder"/plain/*.whl -w "$folder/repaired" >"$folder/auditwheel.log" 2>&1 || { tail -n 20 "$folder/auditwheel.log" >&2; exit 1; }
+"$tools/bin/auditwheel" repair -z 0 "$folder"/plain/*.whl -w "$folder/repaired" >"$folder/auditwheel.log" 2>&1 || { tail -n 20 "$folder/auditwheel.log" >&2; exit 1; }
 "$tools/bin/python" "$root/packaging/complete_wheel.py" "$folder"/repaired/*.whl "$folder"
 ls "$folder"/*.whl
