@@ -98,6 +98,10 @@ void refuseContradictions(const RenderOptions& render) {
     if (render.build.timeLimit)
         refuse("--time", "a shot is divided by samples, not by the clock", "give --samples or --noise");
     if (render.part || render.skip > 0) refuse("--part", "the shot divides the render itself", "leave it out");
+    for (const auto& [flag, file] : {std::pair("--contact-sheet", render.sheet), std::pair("--clip", render.clip)})
+        if (!file.empty())
+            refuse(flag, "a shot is made of parts, which make no pictures of frames",
+                   "leave it out; it shows frames that `abbe render --frames` makes");
     if (render.pixel) refuse("--pixel", "one pixel is no shot", "`abbe render --pixel` looks at one");
 }
 

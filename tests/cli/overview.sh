@@ -48,6 +48,8 @@ expect 2 render shot.scene --clip clip.mp4 -o no.exr
 expect 2 render shot.scene --fps 25 -o no.exr
 expect 2 render shot.scene --frames 1-2 --part 1/2 -o no.exr --clip clip.mp4
 says err "--part makes no pictures of frames"
+expect 1 farm submit shot.scene --frames 1-2 -o no.####.exr --contact-sheet sheet.png --print
+says err "--contact-sheet"
 for rate in 0 -1 x 1/0 24/ ''; do expect 2 render shot.scene --frames 1 --fps "$rate" -o no.exr; done
 mkdir bin
 ln -s "$(command -v timeout)" "$(command -v sed)" bin/
