@@ -8,6 +8,7 @@
 #include <map>
 #include <netinet/in.h>
 #include <poll.h>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <sys/socket.h>
@@ -70,7 +71,8 @@ class TevReceiver {
     std::uint16_t port() const { return port_; }
     int creates = 0, closes = 0, updates = 0;
     std::vector<std::size_t> channelsOfUpdates;
-    ReceivedImage image, closed; // closed: the last one, as it was then
+    std::set<std::vector<int>> areas; // of updates: x, y, width, height
+    ReceivedImage image, closed;      // closed: the last one, as it was then
 
     // Waits for a connection; false if there is none in that time.
     bool accept(int milliseconds) {
@@ -188,6 +190,7 @@ class TevReceiver {
         const auto width = number<std::int32_t>(), height = number<std::int32_t>();
         if (x < 0 || y < 0 || width < 1 || height < 1 || x + width > image.width || y + height > image.height)
             throw std::runtime_error("an area outside of the image");
+        areas.insert({x, y, width, height});
         std::vector<std::int64_t> offsets, strides;
         for (std::size_t c = 0; c < channels.size(); ++c) offsets.push_back(number<std::int64_t>());
         for (std::size_t c = 0; c < channels.size(); ++c) strides.push_back(number<std::int64_t>());

@@ -79,6 +79,19 @@ TEST_CASE("tev gets the picture of a view, what an edit changes of it, and the e
         v.save("scene 1 nonsense");
         REQUIRE(v.comes("\"status\":\"error\""));
         CHECK(taking.comes([](const TevReceiver& r) { return r.creates == 1 && r.image.complete(); }));
+        // A region, of which the layers are updated alone.
+        v.save(kBall);
+        REQUIRE(v.comes("\"status\":\"done\""));
+        REQUIRE(taking.comes([&](const TevReceiver& r) { return sumOf(r.image, "albedo.R") > 0.8 * 64 * 48 * 0.4; }));
+        int updates = 0;
+        REQUIRE(taking.comes([&](const TevReceiver& r) { return (updates = r.updates) > 0; }));
+        v.session->order("region", R"({"x0":10,"y0":10,"x1":30,"y1":20})");
+        CHECK(taking.comes([&](const TevReceiver& r) {
+            return r.updates > updates && r.areas.contains({10, 10, 20, 10}) && r.creates == 1 && r.image.complete();
+        }));
+        v.session->order("region", "{}");
+        REQUIRE(v.comes("\"region\":null"));
+        REQUIRE(v.comes("\"status\":\"done\""));
         // Another size: the image is made anew.
         REQUIRE(v.shows(replaced(kBall, "size 64 48", "size 40 30")));
         REQUIRE(v.comes("\"status\":\"done\""));
