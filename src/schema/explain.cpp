@@ -1,8 +1,11 @@
 #include "base/diagnostic.h"
 #include "schema/describe.h"
+#include "schema/foreign_terms.h"
+#include "schema/foreign_words.h"
 #include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
+#include "spectrum/named_spectra.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -222,8 +225,75 @@ std::string explainPath(const TypeTable& table, const std::vector<std::string>& 
     return text + fields.text();
 }
 
+// What spectra there are by name, with where they are from: "N-BK7", "Au", "D65", "macbeth-13", "glass N-BK7".
+std::string dataText(std::string_view query) {
+    constexpr double kF = 486.1327, kD = 587.5618, kC = 656.2725; // nm: the lines by which glasses are named
+    const auto parts = queryParts(query);
+    const std::string& name = parts.back();
+    const auto asked = [&](std::string_view form) {
+        return parts.size() == 1 || (parts.size() == 2 && parts[0] == form);
+    };
+    std::string text;
+    if (const auto glass = findGlass(name); glass && asked("glass")) {
+        const auto index = indexCurve(*glass);
+        const double n = index->at(kD), spread = index->at(kF) - index->at(kC);
+        text += fmt::format("glass {}: a refractive index\n", glass->name);
+        text += labelled("index", fmt::format("{:.5g} at 587.6 nm{}", n,
+                                              spread > 0 ? fmt::format(", Abbe number {:.1f}", (n - 1) / spread) : ""));
+        text += labelled("measured", fmt::format("{:g} to {:g} nm", glass->minNm, glass->maxNm));
+        text += labelled("absorbs", glass->k.empty() ? "not tabulated"
+                                                     : fmt::format("tabulated from {:g} to {:g} nm", glass->kNm.front(),
+                                                                   glass->kNm.back()));
+        text += labelled("example", fmt::format("material dielectric {{ ior glass {} }}", glass->name));
+        text += labelled("source", glass->source);
+    }
+    if (const auto metal = findMetal(name); metal && asked("metal")) {
+        text += fmt::format("metal {}: a complex refractive index\n", metal->name);
+        text += labelled("index", fmt::format("{:.3g} + {:.3g} i at 587.6 nm", indexCurve(*metal)->at(kD),
+                                              extinctionCurve(*metal)->at(kD)));
+        text += labelled("measured", fmt::format("{:g} to {:g} nm", metal->nm.front(), metal->nm.back()));
+        text += labelled("example", fmt::format("material conductor {{ index metal {} }}", metal->name));
+        text += labelled("source", metal->source);
+    }
+    const auto table = [&](std::string_view form, const std::optional<NamedSpectrum>& s, std::string_view what,
+                           std::string_view example) {
+        if (!s || !asked(form)) return;
+        text += fmt::format("{} {}: {}\n", form, s->name, what);
+        const double last = s->firstNm + s->stepNm * static_cast<double>(s->values.size() - 1);
+        text += labelled("measured", fmt::format("{:g} to {:g} nm in steps of {:g} nm", s->firstNm, last, s->stepNm));
+        text += labelled("example", fmt::format("{} {} {}", example, form, s->name));
+        text += labelled("source", s->source);
+    };
+    table("illuminant", findIlluminant(name), "the spectrum of a light", "color");
+    table("measured", findMeasured(name), "a reflectance", "reflectance");
+    return text;
+}
+
+// What other programs call a thing, and what it is here.
+std::string foreignText(const TypeTable& table, std::string_view query) {
+    if (const ForeignTerm* term = findForeignTerm(query)) {
+        std::string text =
+            fmt::format("{}: a word of {}\n", term->term, term->where == "all" ? "other programs" : term->where);
+        text += labelled("here", term->here);
+        return text + labelled("more", fmt::format("`abbe explain {}`", term->topic));
+    }
+    std::string text;
+    for (int i = 0; i < kKindCount; ++i) {
+        const auto kind = static_cast<Kind>(i);
+        const std::string_view type = foreignType(table, kind, query);
+        if (type.empty()) continue;
+        text += fmt::format("{}: a word of other programs\n", query);
+        text += labelled("here", fmt::format("`{} {}`", keyword(kind), type));
+        text += labelled("more", fmt::format("`abbe explain {}.{}`", keyword(kind), type));
+    }
+    return text;
+}
+
 std::string suggestion(const TypeTable& table, std::string_view word) {
     std::vector<std::string_view> names = {"units", "presets"};
+    for (const auto& known : {glassNames(), metalNames(), illuminantNames(), measuredNames()})
+        names.insert(names.end(), known.begin(), known.end());
+    for (const ForeignTerm& term : foreignTerms()) names.push_back(term.term);
     for (int i = 0; i < kKindCount; ++i) names.push_back(keyword(static_cast<Kind>(i)));
     for (int i = 0; i < kDimensionCount; ++i)
         names.insert(names.end(), spellings(static_cast<Dimension>(i)).begin(),
@@ -248,7 +318,9 @@ std::string suggestion(const TypeTable& table, std::string_view word) {
 
 Explanation explain(const TypeTable& table, std::string_view query) {
     const auto parts = queryParts(query);
-    const std::string text = parts.size() == 1 ? explainWord(table, parts[0]) : explainPath(table, parts);
+    std::string text = parts.size() == 1 ? explainWord(table, parts[0]) : explainPath(table, parts);
+    if (text.empty()) text = dataText(query);
+    if (text.empty()) text = foreignText(table, query);
     if (!text.empty()) return {true, text};
     return {false, fmt::format("nothing is named `{}`; {}", query, suggestion(table, parts.back()))};
 }
@@ -271,6 +343,7 @@ Ask for any of these words, or for
   transform      how things are moved       scene, param   the header, values with names
   units          all units                  presets        materials that come with the program
   E0310          what a diagnostic means    x.scene        what a scene needs simulated
+  N-BK7, D65     measured data by name      area light     what other programs call a thing
 )";
 }
 
