@@ -99,6 +99,7 @@ struct FmtOptions {
     bool check = false; // these two write nothing
     bool diff = false;
     bool upgrade = false; // state the edition
+    bool tree = false;    // print the nodes as JSON instead
     bool quiet = false;
 };
 
@@ -303,7 +304,7 @@ ExitCode run(const LspOptions&, const CommonOptions&);
 
 // `abbe reference`: what the program makes of its own tables.
 struct ReferenceOptions {
-    enum class What : std::uint8_t { pages, json, textmate, man, bash, zsh, fish, share };
+    enum class What : std::uint8_t { pages, json, jsonSchema, textmate, man, bash, zsh, fish, share };
     What what = What::pages;
     std::string folder; // of pages and share
 };

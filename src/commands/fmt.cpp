@@ -6,6 +6,8 @@
 #include "exchange/importer/importer.h"
 #include "io/file.h"
 #include "parser/parse.h"
+#include "schema/json_schema.h"
+#include "schema/unit_spelling.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -22,7 +24,8 @@ Examples:
   abbe fmt --check scenes                    names those that would change in a folder, for CI
   abbe fmt --diff room.scene                 shows what would change
   abbe fmt --stdin <room.scene               from an editor: the text goes to standard output
-  abbe fmt --upgrade old.scene               states the edition of the language, too)";
+  abbe fmt --upgrade old.scene               states the edition of the language, too
+  abbe fmt --tree room.scene >room.json      its nodes as JSON, for other programs)";
 
 namespace {
 
@@ -34,6 +37,9 @@ std::optional<ArgumentFault> wrongTogether(const FmtOptions& options) {
     if (inputs > 1) return ArgumentFault{"--stdin", "standard input can be read once"};
     if (options.standardInput && !options.paths.empty())
         return ArgumentFault{"--stdin", "it is in place of scene files"};
+    if (options.tree && (options.check || options.diff || options.upgrade))
+        return ArgumentFault{"--tree", "it prints the text as it is, and lays nothing out"};
+    if (options.tree && options.paths.size() > 1) return ArgumentFault{"--tree", "it prints one scene"};
     if (inputs == 0 && !options.standsFor.empty()) return ArgumentFault{"--as", "it is for standard input"};
     return std::nullopt;
 }
@@ -47,6 +53,7 @@ void addArguments(Arguments& a, FmtOptions& o) {
     a.flag("--stdin", &o.standardInput, "The text comes from standard input and goes to standard output");
     a.value("--as", "FILE", &o.standsFor, "What standard input is called in messages");
     a.flag("--upgrade", &o.upgrade, "State the edition of the language where it is missing");
+    a.flag("--tree", &o.tree, "Write nothing; print the nodes as JSON (`abbe reference json-schema` describes it)");
     a.flag("--quiet,-q", &o.quiet, "Say nothing but errors");
     MessageFormat& format = a.common().format;
     a.choice<MessageFormat>(
@@ -221,9 +228,10 @@ std::optional<std::string> laidOut(SourceMap& sources, FileId file, bool upgrade
     const auto document = parse(sources, file, {}, diagnostics);
     diagnostics = syntaxErrors(diagnostics);
     if (diagnostics.hasErrors()) return std::nullopt;
-    std::string text(sources.text(file));
+    std::string text = schema::withCanonicalUnits(sources.text(file), *document);
     Diagnostics ignored;
-    auto before = document;
+    auto before =
+        text == sources.text(file) ? document : parse(sources, sources.add("with its units", text), {}, ignored);
     if (upgrade && !hasEdition(*document)) {
         text = withEdition(text);
         before = parse(sources, sources.add("with its edition", text), {}, ignored);
@@ -235,12 +243,23 @@ std::optional<std::string> laidOut(SourceMap& sources, FileId file, bool upgrade
     return after;
 }
 
+// The text may have no errors of syntax; what it means is not looked at.
+ExitCode printTree(const SourceMap& sources, FileId file, const Console& console) {
+    Diagnostics diagnostics;
+    const auto document = parse(sources, file, {}, diagnostics);
+    const Diagnostics errors = syntaxErrors(diagnostics);
+    if (!errors.hasErrors()) return console.data(schema::treeJson(*document)), ExitCode::done;
+    console.report(errors, sources);
+    return ExitCode::faulty;
+}
+
 ExitCode formatOne(const std::string& path, bool fromInput, const FmtOptions& options, const Console& console) {
     SourceMap sources;
     Diagnostics diagnostics;
     const std::string name = !fromInput ? path : options.standsFor.empty() ? "<stdin>" : options.standsFor;
     const auto file =
         fromInput ? readSceneText(sources, name, std::cin, diagnostics) : readSceneFile(sources, path, diagnostics);
+    if (file && options.tree) return printTree(sources, *file, console);
     const auto after = file ? laidOut(sources, *file, options.upgrade, diagnostics) : std::nullopt;
     if (!after) {
         console.report(diagnostics, sources);
@@ -298,6 +317,11 @@ std::vector<std::string> scenesOf(const std::string& path, const Console& consol
 ExitCode run(const FmtOptions& options, const CommonOptions& common) {
     if (options.standardInput) return formatOrRefuse(kFromInput, true, options, common.console);
     ExitCode result = ExitCode::done;
+    for (const std::string& path : options.paths)
+        if (std::error_code none; options.tree && std::filesystem::is_directory(path, none)) {
+            common.console.error(fmt::format("`{}` is a folder, and `--tree` prints one scene", path));
+            return ExitCode::usage;
+        }
     for (const std::string& path : options.paths)
         for (const std::string& file : scenesOf(path, common.console))
             result = worse(result, formatOrRefuse(file, file == kFromInput, options, common.console));

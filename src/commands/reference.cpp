@@ -7,6 +7,7 @@
 #include "parser/presets.h"
 #include "scene/registry.h"
 #include "schema/describe.h"
+#include "schema/json_schema.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -18,6 +19,7 @@ const char* const kReferenceHelp = R"(Writes what the program makes of its own t
 
   pages FOLDER      the reference of the scene language, a page of Markdown for each kind
   json              kinds, types, properties, units and data for editors and exporters
+  json-schema       JSON Schema of scenes as `abbe fmt --tree` prints them
   textmate          the TextMate grammar by which editors colour scene files
   man               the manual page, for `man -l`
   bash, zsh, fish   completion for that shell
@@ -33,9 +35,10 @@ namespace {
 
 using What = ReferenceOptions::What;
 
-constexpr Choice<What> kWhats[] = {{"pages", What::pages}, {"json", What::json},  {"textmate", What::textmate},
-                                   {"man", What::man},     {"bash", What::bash},  {"zsh", What::zsh},
-                                   {"fish", What::fish},   {"share", What::share}};
+constexpr Choice<What> kWhats[] = {
+    {"pages", What::pages},       {"json", What::json}, {"json-schema", What::jsonSchema},
+    {"textmate", What::textmate}, {"man", What::man},   {"bash", What::bash},
+    {"zsh", What::zsh},           {"fish", What::fish}, {"share", What::share}};
 
 } // namespace
 
@@ -70,6 +73,7 @@ struct Language {
 std::string referenceText(What what) {
     const Language language;
     if (what == What::json) return schema::schemaJson(language.types);
+    if (what == What::jsonSchema) return schema::jsonSchema(language.types);
     if (what == What::textmate) return schema::textMateGrammar(language.types);
     const CommandInfo tree = commandTree(commandTable());
     if (what == What::man) return manPage(tree, versionNumber());

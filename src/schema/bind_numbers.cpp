@@ -134,12 +134,14 @@ std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry
     const auto row = reader.row(entry, 0, count);
     if (!row) return std::nullopt;
     const auto& v = row->values;
-    if (!unusual.empty())
-        context.diagnostics
-            .warning("W0301", entry.span(),
-                     fmt::format("`{}` is {} {}", field.name, plain(v[0]), siUnit(row->scale.dimension)),
-                     "a number without a unit")
-            .help = fmt::format("write `{}`", unusual);
+    if (!unusual.empty()) {
+        auto& warning = context.diagnostics.warning(
+            "W0301", entry.span(), fmt::format("`{}` is {} {}", field.name, plain(v[0]), siUnit(row->scale.dimension)),
+            "a number without a unit");
+        warning.help = fmt::format("write `{}`", unusual);
+        const Span last = entry.value(entry.count() - 1).span;
+        warning.fixes.push_back({{last.file, last.end, last.end}, fmt::format(" {}", field.usualUnit)});
+    }
     switch (field.type) {
     case FieldType::quantity:
         return Quantity{v[0], row->scale.dimension, entry.span(), textKeys(entry)};

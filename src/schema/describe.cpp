@@ -2,6 +2,7 @@
 
 #include "base/diagnostic.h"
 #include "schema/definition_reader.h"
+#include "schema/json_text.h"
 #include "schema/measure.h"
 #include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
@@ -158,30 +159,11 @@ const char* id(FieldType type) { return kFieldTypes[static_cast<std::size_t>(typ
 const char* id(SpectrumRole role) { return kRoles[static_cast<std::size_t>(role)]; }
 const char* id(Dimension d) { return kDimensionIds[static_cast<std::size_t>(d)]; }
 
-std::string jsonString(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        if (static_cast<unsigned char>(c) < 0x20)
-            out += fmt::format("\\u{:04x}", c);
-        else
-            out += c;
-    }
-    return out + '"';
-}
-
-template <typename Range, typename Text> std::string array(const Range& range, Text text) {
-    std::string out = "[";
-    for (const auto& item : range) out += (out.size() > 1 ? "," : "") + text(item);
-    return out + "]";
-}
-
-std::string jsonView(std::string_view text) { return jsonString(text); }
-
 std::string jsonField(const FieldInfo& field) {
     std::string out = fmt::format(R"({{"name":{},"type":"{}","doc":{})", jsonString(field.name), id(field.type),
                                   jsonString(field.doc));
-    out += fmt::format(R"(,"dimensions":{})", array(field.dimensions, [](Dimension d) { return jsonString(id(d)); }));
+    out +=
+        fmt::format(R"(,"dimensions":{})", jsonArray(field.dimensions, [](Dimension d) { return jsonString(id(d)); }));
     if (!field.example.empty()) out += fmt::format(R"(,"example":{})", jsonString(field.example));
     if (!field.defaultText.empty()) out += fmt::format(R"(,"default":{})", jsonString(field.defaultText));
     if (std::isfinite(field.lower)) out += fmt::format(R"(,"minimum":{})", field.lower);
@@ -190,18 +172,18 @@ std::string jsonField(const FieldInfo& field) {
         out += fmt::format(R"(,"role":"{}")", id(field.role));
     if (field.type == FieldType::reference || field.type == FieldType::weighted)
         out += fmt::format(R"(,"kind":"{}")", keyword(field.referenceKind));
-    if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", array(field.choices, jsonView));
-    if (!field.synonyms.empty()) out += fmt::format(R"(,"synonyms":{})", array(field.synonyms, jsonView));
+    if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", jsonArray(field.choices, jsonView));
+    if (!field.synonyms.empty()) out += fmt::format(R"(,"synonyms":{})", jsonArray(field.synonyms, jsonView));
     if (!field.keys.empty())
-        out += fmt::format(R"(,"keys":{})", array(field.keys, [](const FieldKey& key) {
+        out += fmt::format(R"(,"keys":{})", jsonArray(field.keys, [](const FieldKey& key) {
                                return fmt::format(R"({{"name":{},"doc":{},"choices":{}}})", jsonString(key.name),
-                                                  jsonString(key.doc), array(key.choices, jsonView));
+                                                  jsonString(key.doc), jsonArray(key.choices, jsonView));
                            }));
     if (!field.note.empty()) out += fmt::format(R"(,"note":{})", jsonString(field.note));
     if (field.repeats || field.type == FieldType::moments) out += R"(,"repeats":true)";
     if (field.tiles) out += R"(,"tiles":true)";
     if (field.canMove) out += R"(,"keyed":true)";
-    if (!field.block.empty()) out += fmt::format(R"(,"block":{})", array(field.block, jsonField));
+    if (!field.block.empty()) out += fmt::format(R"(,"block":{})", jsonArray(field.block, jsonField));
     if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonString(field.group));
     if (field.required) out += R"(,"required":true)";
     if (field.argument >= 0) out += fmt::format(R"(,"argument":{})", field.argument);
@@ -212,7 +194,7 @@ std::string jsonField(const FieldInfo& field) {
 std::string jsonType(const TypeInfo& type) {
     return fmt::format(R"({{"kind":"{}","name":{},"doc":{},"example":{},"default":{},"fields":{}}})",
                        keyword(type.kind), jsonString(type.name), jsonString(type.doc), jsonString(type.example),
-                       type.isDefault ? "true" : "false", array(type.fields, jsonField));
+                       type.isDefault ? "true" : "false", jsonArray(type.fields, jsonField));
 }
 
 std::string jsonUnits() {
@@ -251,14 +233,15 @@ std::string jsonWord(const LanguageWord& word) {
                            jsonString(p.doc), jsonString(p.takes), jsonString(p.defaultText), jsonString(p.example));
     };
     return fmt::format(R"({{"name":{},"doc":{},"example":{},"parts":{}}})", jsonString(word.name), jsonString(word.doc),
-                       jsonString(word.example), array(word.parts, part));
+                       jsonString(word.example), jsonArray(word.parts, part));
 }
 
 // What has a name because it comes with the program.
 std::string jsonNames() {
     return fmt::format(R"({{"illuminant":{},"measured":{},"glass":{},"metal":{},"rgb_space":{}}})",
-                       array(illuminantNames(), jsonView), array(measuredNames(), jsonView),
-                       array(glassNames(), jsonView), array(metalNames(), jsonView), array(rgbSpaceWords(), jsonView));
+                       jsonArray(illuminantNames(), jsonView), jsonArray(measuredNames(), jsonView),
+                       jsonArray(glassNames(), jsonView), jsonArray(metalNames(), jsonView),
+                       jsonArray(rgbSpaceWords(), jsonView));
 }
 
 std::string jsonPresets(const TypeTable& table) {
@@ -266,7 +249,7 @@ std::string jsonPresets(const TypeTable& table) {
         return fmt::format(R"({{"kind":"{}","name":{},"group":{},"doc":{},"source":{}}})", keyword(p.kind),
                            jsonString(p.name), jsonString(p.group), jsonString(p.doc), jsonString(p.source));
     };
-    return table.presets() ? array(table.presets()->all(), preset) : "[]";
+    return table.presets() ? jsonArray(table.presets()->all(), preset) : "[]";
 }
 
 std::string jsonCode(const CodeInfo& code) {
@@ -306,9 +289,9 @@ std::string schemaJson(const TypeTable& table) {
     };
     return fmt::format("{{\"edition\":1,\"kinds\":{},\"words\":{},\"types\":{},\"spectra\":{},\"units\":{},"
                        "\"dimensions\":{},\"names\":{},\"presets\":{},\"codes\":{}}}\n",
-                       jsonKinds(), array(languageWords(), jsonWord), array(table.all(), jsonType),
-                       array(spectrumForms(), form), jsonUnits(), jsonDimensions(), jsonNames(), jsonPresets(table),
-                       array(allCodes(), jsonCode));
+                       jsonKinds(), jsonArray(languageWords(), jsonWord), jsonArray(table.all(), jsonType),
+                       jsonArray(spectrumForms(), form), jsonUnits(), jsonDimensions(), jsonNames(), jsonPresets(table),
+                       jsonArray(allCodes(), jsonCode));
 }
 
 std::string schemaListing(const TypeTable& table) {
