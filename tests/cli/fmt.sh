@@ -119,6 +119,26 @@ expect 0 fmt --upgrade old.scene
 is old.scene $'// A room.\nscene 1\n\ncamera { fov 40 deg }\n'
 expect 0 fmt --check --upgrade old.scene
 
+# Units of two spellings have one; numbers, comments and texts stay.
+printf 'scene 1\n\nlight sky { luminance 0.90e3 cd-per-m2 }  // cd-per-m2\n' >units.scene
+expect 4 fmt --check units.scene
+expect 0 fmt units.scene
+is units.scene $'scene 1\n\nlight sky { luminance 0.90e3 nits }  // cd-per-m2\n'
+expect 0 fmt --check units.scene
+
+# --tree prints the nodes as JSON and writes nothing.
+printf %s "$untidy" >tree.scene
+expect 0 fmt --tree tree.scene
+is tree.scene "$untidy"
+is out $'[{"name":"scene","values":[1]},\n{"name":"camera","children":[{"name":"from","values":[0,1,4]},{"name":"fov","values":[40,"deg"]}]},\n{"name":"light","values":["sky"],"children":[{"name":"luminance","values":[900,"nits"]}]}]\n'
+printf %s "$untidy" | timeout 60 "$program" fmt --tree --stdin >out 2>err || fault "--tree --stdin ended with $?"
+says out '"luminance"'
+expect 1 fmt --tree bad.scene
+is_empty out
+expect 2 fmt --tree --check tree.scene
+expect 2 fmt --tree tree.scene a.scene
+expect 2 fmt --tree many
+
 expect 0 fmt --help
 says out "--check"
 finish

@@ -82,7 +82,8 @@ TEST_CASE("another program's word for the same thing is replaced") {
 }
 
 TEST_CASE("a number without a unit that was hardly meant in metres") {
-    const auto first = [](const std::string& camera) {
+    std::string fixed;
+    const auto first = [&](const std::string& camera) {
         SourceMap sources;
         Diagnostics diagnostics;
         const schema::TypeTable types = makeTypeTable();
@@ -91,14 +92,18 @@ TEST_CASE("a number without a unit that was hardly meant in metres") {
         BuildOptions options;
         options.geometry = false;
         buildScene(tree, types, options, diagnostics);
+        fixed = applyFixes(sources.text(FileId{0}), FileId{0}, diagnostics).text;
         const auto d = std::ranges::find_if(diagnostics.all(), [](const Diagnostic& x) { return x.code != "E0610"; });
         return d == diagnostics.all().end() ? "" : d->code + ": " + d->message + ": " + d->help;
     };
     CHECK(first("scene 1\ncamera { lens 50 }") == "W0301: `lens` is 50 m: write `lens 50 mm`");
+    CHECK(fixed == "scene 1\ncamera { lens 50 mm }");
     CHECK(first("scene 1\ncamera { lens 500 }").find("E0303") == 0);
     CHECK(first("scene 1\ncamera { lens 500 }").find("write `lens 500 mm`") != std::string::npos);
     CHECK(first("scene 1\ncamera { sensor 36 24 }") == "W0301: `sensor` is 36 m: write `sensor 36 24 mm`");
+    CHECK(fixed == "scene 1\ncamera { sensor 36 24 mm }");
     CHECK(first("scene 1 length=mm\ncamera { lens 50 }") == "");
     CHECK(first("scene 1\ncamera { lens 0.05 }") == "");
     CHECK(first("scene 1\ncamera { lens 50 m }") == "");
+    CHECK(fixed == "scene 1\ncamera { lens 50 m }");
 }
