@@ -46,7 +46,7 @@ expect 0 render first.scene --size 32x18 --samples 4 -q -o first.exr
 # Standard input: its name, its folder, and what cannot be.
 mkdir -p far
 printf '400 0.5\n700 0.5\n' >far/paint.spd
-printf 'scene 1\ncamera\nlight sky\nshape sphere { material diffuse { reflectance table "paint.spd" } }\n' >far/room.scene
+printf 'scene 1\ncamera { from 0 0 5 }\nlight sky\nshape sphere { material diffuse { reflectance table "paint.spd" } }\n' >far/room.scene
 expect 0 check --as far/room.scene - <far/room.scene
 says err "far/room.scene: no errors, no warnings"
 expect 0 check -q --as far/room.scene - <far/room.scene
