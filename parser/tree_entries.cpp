@@ -128,7 +128,7 @@ const char* TreeReader::skipBetweenRows(const char* p) {
         while (*p == ' ' || *p == '\t' || *p == '\n' || *p == '\r') ++p;
         if (p[0] != '/' || p[1] != '/') return p;
         const char* end = p;
-        while (*end >= ' ' || *end == '\t') ++end; // bytes above 127 are negative
+        while (static_cast<signed char>(*end) >= ' ' || *end == '\t') ++end; // bytes above 127 are negative
         if (*end != '\n' && *end != '\r') return p;
         p = end;
     }

@@ -46,19 +46,25 @@ void TreeReader::readLoneSemicolons() {
     errors_.fix(d, first, at_, "");
 }
 
-// Reserves the arrays by cheap bounds: every node but the last is followed by a line end, a semicolon or a brace. What
-// is not used costs no memory, only addresses.
+// Reserves the arrays by a cheap guess: every node but the last is followed by a line end, a semicolon or a brace, and
+// rows of numbers have no records. What is not used costs no memory, only addresses.
 void TreeReader::reserve() {
     constexpr std::ptrdiff_t block = 128;
-    std::size_t count = 1;
+    std::size_t ends = 1, rows = 0;
     const char* p = text_.begin;
-    const auto ends = [](char c) { return static_cast<unsigned char>(c == '\n' || c == ';' || c == '{'); };
+    const auto isEnd = [](char c) { return static_cast<unsigned char>(c == '\n' || c == ';' || c == '{'); };
+    const auto isRow = [](char c, char next) { return static_cast<unsigned char>(c == '-' && next == ' '); };
     for (; text_.end - p >= block; p += block) {
-        unsigned char inBlock = 0; // one byte wide, for the sake of vector code
-        for (std::ptrdiff_t i = 0; i < block; ++i) inBlock = static_cast<unsigned char>(inBlock + ends(p[i]));
-        count += inBlock;
+        unsigned char endsHere = 0, rowsHere = 0; // one byte wide, for the sake of vector code
+        for (std::ptrdiff_t i = 0; i < block; ++i) {
+            endsHere = static_cast<unsigned char>(endsHere + isEnd(p[i]));
+            rowsHere = static_cast<unsigned char>(rowsHere + isRow(p[i], p[i + 1]));
+        }
+        ends += endsHere;
+        rows += rowsHere;
     }
-    for (; p < text_.end; ++p) count += ends(*p);
+    for (; p < text_.end; ++p) ends += isEnd(*p);
+    const std::size_t count = ends > rows ? ends - rows : 1;
     document_.nodes.reserve(count);
     document_.values.reserve(count);
 }

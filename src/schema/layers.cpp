@@ -289,7 +289,8 @@ class LayerReader {
                                 : fmt::format("the scene has no `{}`", keyword(p.kind)),
                          fmt::format("nothing to {}", what));
         if (now) {
-            d.message = fmt::format("{} `{}` is defined further down", keyword(p.kind), p.word ? p.word->text : "");
+            d.message = p.word ? fmt::format("{} `{}` is defined further down", keyword(p.kind), p.word->text)
+                               : fmt::format("`{}` is defined further down", keyword(p.kind));
             d.label = fmt::format("`{}` stands behind what it changes", what);
             d.related.push_back({now->nameSpan, "defined here"});
             return;

@@ -387,6 +387,9 @@ TEST_CASE("overrides of nothing") {
     const auto order = files.shot("override shape a { radius 3 }\nshape a sphere");
     CHECK(order->codes() == "E0229");
     CHECK(order->get("E0229").label == "`override` stands behind what it changes");
+    CHECK(order->get("E0229").message == "shape `a` is defined further down");
+    CHECK(files.shot("override camera { f-stop 2 }\ncamera { }\nshape plane")->get("E0229").message ==
+          "`camera` is defined further down");
     CHECK(files.over("override group room { shape wal { size 1 1 } }")->codes() == "E0229");
     const auto type = files.over("override light key sun { power 1 W }");
     CHECK(type->codes() == "E0230");
