@@ -1,6 +1,7 @@
 #include "schema/expression.h"
 
 #include "schema/entry.h"
+#include "schema/measure.h"
 #include "schema/scene_tree.h"
 #include "schema/suggest.h"
 

@@ -254,6 +254,10 @@ TEST_CASE("--set is the last layer") {
     CHECK(l->params["film"].filter.word == "box");
     const Params& ball = l->params["shape ball"];
     CHECK(ball.radius == 2);
+    const auto varied = files.shot("shape ball sphere { radius 1 }\nvariant big { override shape ball { radius 5 } }",
+                                   {{}, {"big"}, {"shape.ball.radius=2"}});
+    sound(*varied);
+    CHECK(varied->params["shape ball"].radius == 2); // behind the variants, too
     CHECK(files.shot("shape \"Cube.001\" sphere", {{}, {}, {"shape.Cube.001.radius=3"}})
               ->params["shape Cube.001"]
               .radius == 3);
