@@ -42,18 +42,18 @@ set(allowed_verify ${allowed_scene} scene)
 set(allowed_doctor ${allowed_scene} parser scene)
 set(allowed_packs base math spectrum schema io)
 set(allowed_exchange/shared base math spectrum schema io)
-foreach(program mitsuba pbrt gltf obj)
+foreach(program mitsuba pbrt gltf obj usd)
     set(allowed_exchange/${program} ${allowed_exchange/shared} exchange/shared)
 endforeach()
-set(allowed_exchange/importer ${allowed_exchange/shared} exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj)
+set(allowed_exchange/importer ${allowed_exchange/shared} exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/usd)
 set(allowed_exchange/stated ${allowed_exchange/shared} exchange/shared)
-foreach(program mitsuba pbrt gltf)
+foreach(program mitsuba pbrt gltf usd)
     set(allowed_exchange/${program}_export ${allowed_exchange/stated} exchange/stated)
 endforeach()
 list(APPEND allowed_exchange/pbrt_export exchange/pbrt) # its map of the sphere
-set(writers exchange/stated exchange/mitsuba_export exchange/pbrt_export exchange/gltf_export)
+set(writers exchange/stated exchange/mitsuba_export exchange/pbrt_export exchange/gltf_export exchange/usd_export)
 set(allowed_exchange/exporter ${allowed_exchange/shared} exchange/shared ${writers})
-set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/importer ${writers} exchange/exporter)
+set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/usd exchange/importer ${writers} exchange/exporter)
 set(allowed_app ${allowed_scene} parser scene packs ${exchange})
 set(allowed_language_server ${allowed_app} app)
 set(allowed_pictures ${allowed_app} app tev)
@@ -73,7 +73,7 @@ set(folders base math spectrum tev denoise schema parser io volumes vdb render g
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "draco/=io" "meshoptimizer\\.h=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "httplib\\.h=view" "nlohmann/=app|language_server|farm|reports|io|packs|view|exchange/gltf_export" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
+    "CLI/=command_line" "httplib\\.h=view" "nlohmann/=app|language_server|farm|reports|io|packs|view|exchange/gltf_export|exchange/usd" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
 
 set(faults 0)
 macro(fault text)

@@ -51,10 +51,11 @@ ImportFolder::~ImportFolder() {
     fs::remove(path_.string() + ".lock", error);
 }
 
-ImportedScene::ImportedScene(const exchange::ImportFormat& format, const fs::path& foreign, SourceMap& sources,
-                             Diagnostics& diagnostics) {
+ImportedScene::ImportedScene(const exchange::ImportFormat& format, const fs::path& foreign,
+                             const exchange::ImportChoice& choice, SourceMap& sources, Diagnostics& diagnostics) {
     scene_ = folder_.path() / foreign.filename().replace_extension(".scene");
-    text_ = exchange::importScene(format, foreign, scene_, sources, diagnostics);
+    text_ = exchange::importScene(format, foreign, scene_, sources, diagnostics, choice);
+    ofFrame_ = format.make && choice.frame;
 }
 
 // --- models

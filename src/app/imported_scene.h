@@ -19,7 +19,8 @@ class FolderUse;
 struct MeshParams;
 namespace exchange {
 struct ImportFormat;
-}
+struct ImportChoice;
+} // namespace exchange
 
 // A private folder (mode 0700) for as long as the object lives, that this process alone uses: importing is quick, and
 // what is imported may have changed since the last time. Folders that a killed process left behind are removed a day
@@ -43,16 +44,20 @@ class ImportFolder {
 class ImportedScene {
   public:
     // Throws IoError if it cannot be written.
-    ImportedScene(const exchange::ImportFormat&, const std::filesystem::path& foreign, SourceMap&, Diagnostics&);
+    ImportedScene(const exchange::ImportFormat&, const std::filesystem::path& foreign, const exchange::ImportChoice&,
+                  SourceMap&, Diagnostics&);
 
     // The scene's text, or nothing: what is wrong is in the diagnostics then.
     const std::optional<std::string>& text() const { return text_; }
     const std::filesystem::path& scenePath() const { return scene_; }
+    // Whether the text is that of one frame, so that another one is imported anew.
+    bool isOfFrame() const { return ofFrame_; }
 
   private:
     ImportFolder folder_;
     std::filesystem::path scene_;
     std::optional<std::string> text_;
+    bool ofFrame_ = false;
 };
 
 // Models with their materials: every `shape mesh "a.glb" { materials on }` becomes a group of shapes, whose names, as

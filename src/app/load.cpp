@@ -36,6 +36,7 @@ ExitCode LoadedScene::exitCode() const {
 
 bool LoadedScene::changesWithFrames() const {
     if (!tree.document) return false;
+    if (import && import->isOfFrame()) return true;
     return asksForFrame() || std::ranges::any_of(documentsOf(tree), [](const schema::Document* document) {
                return std::ranges::any_of(document->nodes, [](const auto& node) { return node.name == "at"; });
            });
@@ -66,9 +67,11 @@ std::optional<FileId> readPackedScene(LoadedScene& loaded, const std::string& pa
 
 // Messages about the scene that was made call it `room.xml/room.scene`. A foreign scene with errors was readable, but
 // makes none.
-std::optional<FileId> readForeignScene(LoadedScene& loaded, const std::string& path,
+std::optional<FileId> readForeignScene(LoadedScene& loaded, const SceneInput& input,
                                        const exchange::ImportFormat& format) {
-    loaded.import = std::make_unique<const ImportedScene>(format, path, loaded.sources, loaded.diagnostics);
+    const std::string& path = input.path;
+    const exchange::ImportChoice choice{input.camera, input.frame};
+    loaded.import = std::make_unique<const ImportedScene>(format, path, choice, loaded.sources, loaded.diagnostics);
     loaded.readable = loaded.import->text().has_value();
     if (!loaded.readable) return std::nullopt;
     std::istringstream text(*loaded.import->text());
@@ -82,8 +85,9 @@ std::optional<FileId> readText(LoadedScene& loaded, const SceneInput& input) {
         return readSceneText(loaded.sources, input.path, stream, loaded.diagnostics);
     }
     if (input.fromStandardInput) return readSceneText(loaded.sources, input.path, std::cin, loaded.diagnostics);
+    // Packages of USD are archives as packs are.
+    if (const auto* format = exchange::importFormat(input.path)) return readForeignScene(loaded, input, *format);
     if (isPack(input.path)) return readPackedScene(loaded, input.path);
-    if (const auto* format = exchange::importFormat(input.path)) return readForeignScene(loaded, input.path, *format);
     return readSceneFile(loaded.sources, input.path, loaded.diagnostics);
 }
 

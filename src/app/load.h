@@ -34,6 +34,8 @@ struct SceneInput {
     // `frame` has its number, if the scene has that parameter, and the camera's time is frame / fps later.
     std::optional<int> frame = {};
     LayerChoice layers = {};
+    // Of another program's scene, where its moments hang on the camera; empty: its own choice.
+    std::string camera = {};
     // The text, where an editor holds it; `path` is what it is called then, too.
     std::optional<std::string> text = {};
 };

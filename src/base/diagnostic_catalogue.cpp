@@ -331,6 +331,7 @@ constexpr CodeInfo kCodes[] = {
     // E08: scenes of other programs
     {"E0801", "a scene of another program that cannot be read", "The text breaks the rules of its own format, so that nothing can be made of it from there on."},
     {"E0802", "a scene of another program that makes no sense", "A reference to nothing, a value of the wrong type or a missing file: the program that the scene was written for would refuse it, too."},
+    {"E0803", "no reader of OpenUSD stages", "Stages are read by the command `abbe-usd`, which comes with the Python package: `pip install \"abbe[usd]\"`. It is looked for on the PATH, or is what $ABBE_USD names. The message says whether it is not there, or how it ended without a report."},
     {"W0801", "left out of an import or export", "The language that is written has nothing that does what this construct does. The scene is complete without it, and where the language has comments, one says where it was."},
     {"W0802", "approximated in an import or export", "The language that is written can do nearly, but not exactly, what this construct does; the message says how, and a comment in the scene as well."},
     {"W0803", "a parameter that means nothing", "The format has no such parameter in this place, so that the program that the scene was written for would ignore it or complain."},

@@ -112,6 +112,8 @@ struct ImportOptions {
     std::string path;
     std::string output; // empty: named after the foreign file, in the current folder
     bool force = false; // replaces a file that is there
+    std::string camera; // of a stage
+    std::optional<int> frame;
 
     static bool makesFiles() { return true; }
 };
@@ -121,7 +123,7 @@ void addArguments(Arguments&, ImportOptions&);
 ExitCode run(const ImportOptions&, const CommonOptions&);
 
 // `abbe export`: a scene for another program.
-enum class ExportTarget : std::uint8_t { mitsuba, pbrt, gltf };
+enum class ExportTarget : std::uint8_t { mitsuba, pbrt, gltf, usda };
 struct ExportOptions {
     std::string path;
     ExportTarget to = ExportTarget::mitsuba;

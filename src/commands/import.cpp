@@ -16,13 +16,18 @@ const char* const kImportHelp = R"(Makes a scene file of a scene of another prog
 Examples:
   abbe import room.xml                         room.scene, and what it needs in room-files/
   abbe import room.xml -o new/room.scene
+  abbe import shot.usdc --camera /World/cam --frame 12
   abbe render room.xml                         renders such a scene without keeping what it becomes)";
 
 void addArguments(Arguments& a, ImportOptions& o) {
-    a.argument("file", &o.path, "Scene of another program: Mitsuba 3 (.xml), pbrt-v4 (.pbrt), glTF (.glb, .gltf)")
+    a.argument("file", &o.path,
+               "Scene of another program: Mitsuba 3 (.xml), pbrt-v4 (.pbrt), glTF (.glb, .gltf), OpenUSD")
         .require();
     a.value("-o,--output", "FILE", &o.output, "Scene file to write (.scene); else named after the other");
     a.flag("--force", &o.force, "Replace a scene file that is there");
+    a.value("--camera", "NAME", &o.camera,
+            "Camera of an OpenUSD stage; without it that of its settings, else the first");
+    addMoment(a, o.frame);
     addJson(a);
 }
 
@@ -83,7 +88,8 @@ ExitCode run(const ImportOptions& options, const CommonOptions& common) {
     }
     SourceMap sources;
     Diagnostics diagnostics;
-    const auto text = exchange::importScene(*format, options.path, scene, sources, diagnostics);
+    const auto text = exchange::importScene(*format, options.path, scene, sources, diagnostics,
+                                            {options.camera, options.frame, true});
     common.console.report(diagnostics, sources);
     if (!text) return ExitCode::faulty;
     fs::create_directories(fs::path(scene).parent_path(), error);

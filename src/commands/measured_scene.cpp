@@ -20,7 +20,9 @@ Vec2i smallSize(const LoadedScene& loaded, const BuildOptions& options, int side
 } // namespace
 
 MeasuredScene loadMeasured(const SceneInput& input, const BuildOptions& options, int side, RenderReport& messages) {
-    MeasuredScene scene{loadScene(input), options, {}};
+    SceneInput seen = input;
+    seen.camera = options.camera;
+    MeasuredScene scene{loadScene(seen), options, {}};
     LoadedScene& loaded = *scene.loaded;
     if (!options.size && loaded.readable && !loaded.diagnostics.hasErrors())
         scene.options.size = smallSize(loaded, options, side);

@@ -20,7 +20,9 @@
 namespace abbe {
 
 ExitCode RenderRun::load() {
-    loaded_ = carry_ ? carry_->scenes.load(options_.input) : loadScene(options_.input);
+    SceneInput input = options_.input;
+    input.camera = options_.build.camera;
+    loaded_ = carry_ ? carry_->scenes.load(input) : loadScene(input);
     watch_.lap();
     endPhase("reading", loaded_->parseSeconds);
     endPhase("checking", loaded_->resolveSeconds);

@@ -5,6 +5,7 @@
 #include "exchange/mitsuba/mitsuba_import.h"
 #include "exchange/obj/obj_import.h"
 #include "exchange/pbrt/pbrt_import.h"
+#include "exchange/usd/usd_import.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -21,6 +22,7 @@ constexpr ImportFormat kImportFormats[] = {
     {"pbrt", "a scene of pbrt-v4", isPbrtScene, importPbrt},
     {"gltf", "a glTF 2.0 scene", isGltfScene, importGltf},
     {"obj", "a Wavefront OBJ model", isObjModel, importObj},
+    {"usd", "an OpenUSD stage", isUsdStage, nullptr, importUsd},
 };
 
 std::string headOf(const std::filesystem::path& path) {
@@ -42,8 +44,9 @@ const ImportFormat* importFormat(const std::filesystem::path& path) {
 }
 
 std::optional<std::string> importScene(const ImportFormat& format, const std::filesystem::path& foreign,
-                                       const std::filesystem::path& scene, SourceMap& sources,
-                                       Diagnostics& diagnostics) {
+                                       const std::filesystem::path& scene, SourceMap& sources, Diagnostics& diagnostics,
+                                       const ImportChoice& choice) {
+    if (format.make) return format.make(foreign, scene, choice, sources, diagnostics);
     SideFiles files(scene);
     Import import{sources, diagnostics, files, {}};
     const std::size_t before = diagnostics.errorCount();

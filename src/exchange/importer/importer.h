@@ -22,6 +22,9 @@ struct ImportFormat {
     bool (*recognises)(const std::filesystem::path&, std::string_view head);
     // Makes nodes, side files and diagnostics of the file. Throws IoError if a side file cannot be written.
     void (*read)(const std::filesystem::path&, Import&);
+    // Instead of that: another program writes the scene, and this returns its text. Nothing after errors.
+    std::optional<std::string> (*make)(const std::filesystem::path& foreign, const std::filesystem::path& scene,
+                                       const ImportChoice&, SourceMap&, Diagnostics&) = nullptr;
 };
 
 std::span<const ImportFormat> importFormats();
@@ -32,7 +35,8 @@ const ImportFormat* importFormat(const std::filesystem::path&);
 // The text of the scene file `scene` that a foreign one becomes; its side files are written. Nothing after errors,
 // which are in the diagnostics, with places in files of the map.
 std::optional<std::string> importScene(const ImportFormat&, const std::filesystem::path& foreign,
-                                       const std::filesystem::path& scene, SourceMap&, Diagnostics&);
+                                       const std::filesystem::path& scene, SourceMap&, Diagnostics&,
+                                       const ImportChoice& = {});
 
 // Nodes of a scene file that a shape stands for which takes the materials of its file, without a header: lengths are
 // those of the file.

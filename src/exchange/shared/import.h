@@ -22,6 +22,13 @@ struct ModelUse {
     GltfSelection part;
 };
 
+// What is wanted of a file that holds more than one picture. Formats that are not asked for it know nothing of it.
+struct ImportChoice {
+    std::string camera;       // name; empty: the file's own choice
+    std::optional<int> frame; // of an animation; without it the file's own moment
+    bool still = false;       // that moment alone is kept, else what moves keeps its times in the animation
+};
+
 // One import. Faults of the foreign text are located diagnostics in files of `sources`:
 //   E0801 its syntax is wrong          E0802 what it says makes no sense (no such reference, a missing value)
 //   W0801 it has no counterpart here and is left out     W0802 it is approximated, and how
