@@ -94,7 +94,7 @@ class Text(InFolder):
             abbe.load(path, high=0.9).write(self.folder / "b.scene")
         with self.assertRaises(abbe.SceneError) as caught:
             abbe.load(path, hihg=0.9)
-        self.assertIn("E0204", [d.code for d in caught.exception.diagnostics])
+        self.assertIn("E0221", [d.code for d in caught.exception.diagnostics])
 
     def test_definitions_are_added_to_a_file(self) -> None:
         path = self.folder / "a.scene"
