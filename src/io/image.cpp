@@ -1,8 +1,7 @@
 #include "io/image.h"
 
-#include "io/array_geometry.h"
-
 #include "base/file.h"
+#include "io/array_geometry.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
 

@@ -1,7 +1,6 @@
 #include "io/mesh_file.h"
 
 #include "io/array_geometry.h"
-
 #include "io/file.h"
 #include "io/gltf.h"
 

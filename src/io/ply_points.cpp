@@ -1,8 +1,7 @@
 #include "io/ply_points.h"
 
-#include "io/array_geometry.h"
-
 #include "base/memory_limit.h"
+#include "io/array_geometry.h"
 #include "io/file.h"
 #include "io/ply_format.h"
 

@@ -1,8 +1,8 @@
 #include "volumes/vdb_file.h"
 
 #include "base/memory_limit.h"
-#include "base/program_folder.h"
 #include "base/process.h"
+#include "base/program_folder.h"
 #include "volumes/vdb_message.h"
 
 #include <cerrno>
