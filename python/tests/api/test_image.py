@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import struct
+import subprocess
 import sys
 import unittest
 
@@ -107,6 +108,13 @@ class Tools(InFolder):
 
 
 class Package(unittest.TestCase):
+    def test_the_program_is_there(self) -> None:
+        run = [sys.executable, "-m", "abbe"]
+        self.assertIn(abbe.__version__, subprocess.run([*run, "--version"], capture_output=True, text=True, check=True).stdout)
+        farm = subprocess.run([*run, "farm", "status", "x"], capture_output=True, text=True, check=False)
+        self.assertEqual((farm.returncode, farm.stdout), (2, ""))
+        self.assertIn("CMake", farm.stderr)
+
     def test_nothing_of_the_system_is_needed(self) -> None:
         """Libraries that are loaded come from the wheel, but for those that Python itself needs."""
         if sys.platform != "linux" or "site-packages" not in abbe.__file__:
