@@ -16,13 +16,17 @@ const char* const kExportHelp = R"(Writes a scene for another program.
 Examples:
   abbe export room.scene --to mitsuba          room.xml, and what it needs in room-mitsuba-files/
   abbe export room.scene --to pbrt -o new/room.pbrt
-  abbe export room.scene --to gltf             room.glb)";
+  abbe export room.scene --to gltf             room.glb
+  abbe export room.scene --to usda             room.usda)";
 
 void addArguments(Arguments& a, ExportOptions& o) {
     a.argument("scene", &o.path, "Scene file, pack, or scene of another program").require();
-    a.choice<ExportTarget>(
-         "--to", o.to, {{"mitsuba", ExportTarget::mitsuba}, {"pbrt", ExportTarget::pbrt}, {"gltf", ExportTarget::gltf}},
-         "Format: Mitsuba 3, pbrt-v4 or glTF 2.0")
+    a.choice<ExportTarget>("--to", o.to,
+                           {{"mitsuba", ExportTarget::mitsuba},
+                            {"pbrt", ExportTarget::pbrt},
+                            {"gltf", ExportTarget::gltf},
+                            {"usda", ExportTarget::usda}},
+                           "Format: Mitsuba 3, pbrt-v4, glTF 2.0 or OpenUSD")
         .require();
     a.value("-o,--output", "FILE", &o.output, "File to write; else named after the scene");
     a.flag("--force", &o.force, "Replace a file that is there");
@@ -36,7 +40,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string_view nameOfTarget(ExportTarget target) {
-    constexpr std::string_view kNames[] = {"mitsuba", "pbrt", "gltf"};
+    constexpr std::string_view kNames[] = {"mitsuba", "pbrt", "gltf", "usda"};
     return kNames[static_cast<std::size_t>(target)];
 }
 

@@ -3,6 +3,7 @@
 #include "exchange/gltf_export/gltf_writer.h"
 #include "exchange/mitsuba_export/mitsuba_writer.h"
 #include "exchange/pbrt_export/pbrt_writer.h"
+#include "exchange/usd_export/usd_writer.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ constexpr ExportFormat kExportFormats[] = {
     {"mitsuba", "Mitsuba", ".xml", exportMitsuba},
     {"pbrt", "pbrt", ".pbrt", exportPbrt},
     {"gltf", "glTF", ".glb", exportGltf},
+    {"usda", "OpenUSD", ".usda", exportUsd},
 };
 
 } // namespace

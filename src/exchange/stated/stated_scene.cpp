@@ -1,8 +1,10 @@
 #include "exchange/stated/stated_scene.h"
 
+#include "schema/binding.h"
 #include "spectrum/named_spectra.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace abbe::exchange {
@@ -21,8 +23,11 @@ void storeByName(std::vector<schema::FieldInfo>& fields, const std::string& pref
         field.store = [name](void* to, const BoundValue& value) {
             (*static_cast<StoredValues*>(to))[name].push_back(value);
         };
-        if (field.append) // of moments, the first alone counts: they are told apart by what they state
-            field.append = [](void* to, double, Span) { return to; };
+        if (field.append) // the values of all moments, one after the other, and their times
+            field.append = [times = name + ".time"](void* to, double time, Span) {
+                (*static_cast<StoredValues*>(to))[times].push_back(time);
+                return to;
+            };
         storeByName(field.block, name + ".");
     }
 }
@@ -41,6 +46,25 @@ schema::TypeTable tableByName(const schema::TypeTable& types) {
 // References to textures are pointers to an incomplete type here: they stand for things and are never followed.
 const Texture* handleOf(const StatedThing& thing) { return reinterpret_cast<const Texture*>(&thing); }
 const StatedThing* thingOf(const Texture* handle) { return reinterpret_cast<const StatedThing*>(handle); }
+
+// Times of the blocks `at` of a transform, in s.
+std::vector<double> keyTimes(const schema::Node& transform, const schema::Header& header) {
+    Diagnostics repeated;
+    schema::FieldInfo moments;
+    moments.name = "at";
+    std::map<const schema::FieldInfo*, double> last;
+    std::vector<double> times;
+    for (const schema::Node child : transform.children())
+        if (child.name() == "at")
+            if (const auto time = schema::bindMoment(moments, child, last, header, repeated)) times.push_back(*time);
+    return times;
+}
+
+std::vector<double> keyTimesOf(const Definition& definition, const schema::SceneTree& tree) {
+    for (const schema::Node node : definition.properties)
+        if (node.name() == "transform") return keyTimes(node, tree.headerOf(node.headSpan()));
+    return {};
+}
 
 void noteGiven(const schema::Node& node, const std::string& prefix, std::map<std::string, Span, std::less<>>& given) {
     given.emplace(prefix + std::string(node.name()), node.headSpan());
@@ -205,6 +229,8 @@ const StatedThing& StatedScene::bound(const Definition& definition) {
     StoredValues values;
     schema::bind(own, tree_, table_, *this, &values, repeated_);
     thing.values_ = std::move(values);
+    for (const double time : keyTimesOf(definition, tree_))
+        thing.values_[std::string(StatedThing::kTransformTimes)].push_back(time);
     return thing;
 }
 
@@ -215,14 +241,10 @@ const StatedThing& StatedScene::named(const Definition& definition) {
     return *named_[{definition.kind, definition.name}];
 }
 
-Transform StatedScene::transformOf(const Definition& definition, bool& moves) const {
+KeyedTransform StatedScene::transformOf(const Definition& definition) const {
     Diagnostics repeated;
     for (const schema::Node node : definition.properties)
-        if (node.name() == "transform") {
-            const KeyedTransform keyed = schema::bindMotion(node, tree_.headerOf(node.headSpan()), repeated);
-            moves = moves || keyed.moves();
-            return keyed.at(time_);
-        }
+        if (node.name() == "transform") return schema::bindMotion(node, tree_.headerOf(node.headSpan()), repeated);
     return {};
 }
 
@@ -240,23 +262,29 @@ bool StatedScene::placeGrid(const Placed& all, std::vector<Placed>& out) {
                 Placed one = all;
                 one.object = all.thing->target;
                 one.thing = nullptr;
-                one.toWorld =
-                    Transform::translate({at.x * spacing.x, at.y * spacing.y, at.z * spacing.z}).then(all.toWorld);
+                const auto step = Transform::translate({at.x * spacing.x, at.y * spacing.y, at.z * spacing.z});
+                one.toWorld = step.then(all.toWorld);
+                one.motion = Motion(step).then(all.motion);
                 out.push_back(std::move(one));
             }
     return true;
 }
 
-void StatedScene::place(const Definition& d, const Transform& toWorld, const std::vector<std::string>& visible,
+void StatedScene::place(const Definition& d, const Placed& outer, const std::vector<std::string>& visible,
                         std::vector<Placed>& out) {
-    Placed placed{nullptr, {}, {}, false, visible, d.span};
-    placed.toWorld = transformOf(d, placed.moves).then(toWorld);
+    Placed placed{nullptr, {}, {}, false, {}, {}, visible, d.span};
+    const KeyedTransform own = transformOf(d);
+    placed.toWorld = own.at(time_).then(outer.toWorld);
+    placed.motion = Motion().then(own).then(outer.motion);
+    placed.moves = placed.motion.moves();
+    const std::vector<double> times = keyTimesOf(d, tree_);
+    std::ranges::set_union(times, outer.times, std::back_inserter(placed.times));
     for (const schema::Node node : d.properties) {
         if (node.name() != "visible-to") continue;
         placed.visibleTo.clear();
         for (std::size_t i = 0; i < node.valueCount(); ++i) placed.visibleTo.emplace_back(node.value(i).text);
     }
-    if (d.kind == schema::Kind::group) return collect(d.children, placed.toWorld, placed.visibleTo, out);
+    if (d.kind == schema::Kind::group) return collect(d.children, placed, placed.visibleTo, out);
     if (d.kind == schema::Kind::instance)
         placed.object = d.target;
     else
@@ -269,19 +297,22 @@ void StatedScene::place(const Definition& d, const Transform& toWorld, const std
     out.push_back(std::move(placed));
 }
 
-void StatedScene::collect(const std::vector<Definition>& definitions, const Transform& toWorld,
+void StatedScene::collect(const std::vector<Definition>& definitions, const Placed& outer,
                           const std::vector<std::string>& visible, std::vector<Placed>& out) {
     for (const Definition& d : definitions) {
         if (d.kind == schema::Kind::object) {
-            bool moves = false;
-            const Transform own = transformOf(d, moves);
+            const KeyedTransform own = transformOf(d);
+            Placed around;
+            around.toWorld = own.at(time_);
+            around.motion = Motion().then(own);
+            around.times = keyTimesOf(d, tree_);
             std::vector<Placed> inside;
-            collect(d.children, own, {}, inside);
+            collect(d.children, around, {}, inside);
             objects_[d.name] = std::move(inside);
         } else if (d.kind == schema::Kind::shape || d.kind == schema::Kind::light || d.kind == schema::Kind::volume ||
                    d.kind == schema::Kind::group || d.kind == schema::Kind::instance ||
                    d.kind == schema::Kind::instances)
-            place(d, toWorld, visible, out);
+            place(d, outer, visible, out);
     }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "math/motion.h"
 #include "schema/scene_tree.h"
 #include "spectrum/curve.h"
 
@@ -57,6 +58,10 @@ struct StatedNumber {
 // are called `property.value`. Whatever is asked for counts as used, so that a writer knows what it has not written.
 class StatedThing {
   public:
+    // Times of the blocks `at TIME { … }` of a shape or camera, in s, whose values are lists of as many: `at.points`.
+    static constexpr std::string_view kMoments = "at.time";
+    // Likewise those of the keys of a transform.
+    static constexpr std::string_view kTransformTimes = "transform.time";
     schema::Kind kind = schema::Kind::shape;
     std::string name; // empty: unnamed
     std::string type;
@@ -106,6 +111,8 @@ struct Placed {
     std::string object;
     Transform toWorld; // with the thing's own transform, at the camera's time
     bool moves = false;
+    Motion motion;                      // the same at any time
+    std::vector<double> times;          // s, of its keys, rising
     std::vector<std::string> visibleTo; // empty: everything
     Span span;
 };
@@ -137,11 +144,11 @@ class StatedScene final : private schema::Resolver {
     friend class StatedThing;
     const StatedThing& bound(const schema::Definition&);
     const StatedThing& named(const schema::Definition&);
-    void collect(const std::vector<schema::Definition>&, const Transform&, const std::vector<std::string>& visible,
+    void collect(const std::vector<schema::Definition>&, const Placed& outer, const std::vector<std::string>& visible,
                  std::vector<Placed>&);
-    void place(const schema::Definition&, const Transform&, const std::vector<std::string>&, std::vector<Placed>&);
+    void place(const schema::Definition&, const Placed& outer, const std::vector<std::string>&, std::vector<Placed>&);
     static bool placeGrid(const Placed&, std::vector<Placed>&);
-    Transform transformOf(const schema::Definition&, bool& moves) const;
+    KeyedTransform transformOf(const schema::Definition&) const;
 
     const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&) override;
     schema::ComplexIndex metal(std::string_view, Span, Diagnostics&) override;

@@ -20,8 +20,9 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="abbe-usd", description="Writes an OpenUSD stage as a scene of Abbe.", allow_abbrev=False)
-    parser.add_argument("stage", help="the stage: .usd, .usda, .usdc or .usdz")
+    parser = _Parser(prog="abbe-usd", description="Writes an OpenUSD stage as a scene of Abbe, or the reverse.", allow_abbrev=False)
+    parser.add_argument("stage", help="the stage: .usd, .usda, .usdc or .usdz; with --to a scene")
+    parser.add_argument("--to", metavar="STAGE", help="write the scene as this stage, .usda or .usdc, by `abbe export`")
     parser.add_argument("-o", "--output", metavar="FILE", help="scene to write; without it beside the stage, with .scene")
     parser.add_argument("--camera", metavar="PATH", help="camera to render; without it that of the render settings, else the first")
     when = parser.add_mutually_exclusive_group()
@@ -57,6 +58,8 @@ def _variant(text: str) -> tuple[str, str, str]:
 def run(arguments: list[str]) -> int:
     """Returns the exit code."""
     given = _parser().parse_args(arguments)
+    if given.to:
+        return _reverse(given)
     try:
         frames = _frames(given.frames) if given.frames else None
         variants = [_variant(v) for v in given.variant]
@@ -85,6 +88,32 @@ def run(arguments: list[str]) -> int:
         code = NO_FILE
     _finish(given.json, str(output), report, code)
     return code
+
+
+def _reverse(given: argparse.Namespace) -> int:
+    others = {
+        "output": "-o",
+        "camera": "--camera",
+        "frame": "--frame",
+        "frames": "--frames",
+        "purpose": "--purpose",
+        "variant": "--variant",
+        "strict": "--strict",
+    }
+    for name, flag in others.items():
+        if getattr(given, name) not in (None, [], False):
+            sys.stderr.write(f"abbe-usd: `{flag}` belongs to reading stages; it does not go with `--to`\n")
+            return WRONG_ARGUMENTS
+    try:
+        from .reverse import write_stage
+
+        return write_stage(given.stage, Path(given.to), given.force, given.json)
+    except ValueError as fault:
+        sys.stderr.write(f"abbe-usd: {fault}\n")
+        return WRONG_ARGUMENTS
+    except (ImportError, OSError) as fault:
+        sys.stderr.write(f"abbe-usd: {fault}\n")
+        return NO_FILE
 
 
 def _finish(as_json: bool, output: str, report: object, code: int) -> None:
