@@ -144,6 +144,11 @@ class Geometry(RoundTrip):
             stage = Usd.Stage.Open(str(self.usda))
             mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/cage"))
             self.assertEqual(len(mesh.GetFaceVertexCountsAttr().Get()), 6)
+            if "crease" in rules:
+                self.assertEqual(list(mesh.GetCreaseIndicesAttr().Get()), [4, 5, 5, 6, 6, 7, 7, 4])
+                self.assertEqual(list(mesh.GetCreaseSharpnessesAttr().Get()), [2.5] * 4)
+                self.assertEqual((list(mesh.GetCornerIndicesAttr().Get()), list(mesh.GetCornerSharpnessesAttr().Get())), ([0], [4]))
+            self.assertEqual(list(mesh.GetHoleIndicesAttr().Get() or []), [1] if "holes" in rules else [])
         self.assertIn('subdivisionScheme = "bilinear"', text)
 
     def test_seams_of_cages(self) -> None:
