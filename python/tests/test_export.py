@@ -316,6 +316,10 @@ class Materials(RoundTrip):
         ):
             with self.subTest(parameters):
                 self.agree(VIEW + self.BALL + f"material surface openpbr {{ {parameters} }}\n", 0.008, 48)
+                # An even sky shows little of gloss, so the numbers are looked at, too.
+                back = " ".join(self.scene.read_text().translate(str.maketrans("{};", "   ")).split())
+                for part in parameters.replace("30 cm", "0.3 m").replace("10 cm", "0.1 m").split("; "):
+                    self.assertIn(f" {part} ", back)
 
     def test_other_materials(self) -> None:
         self.agree(VIEW + self.BALL + "material surface dielectric { ior 1.4; roughness 0.2 }\n", 0.01, 96)
