@@ -3,8 +3,8 @@
 
 #include "binding/diagnostic_records.h"
 #include "binding/scene_handle.h"
-#include "render_run/render_host.h"
 #include "render_run/render_options.h"
+#include "render_run/render_run.h"
 
 #include <condition_variable>
 #include <exception>

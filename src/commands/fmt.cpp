@@ -6,8 +6,8 @@
 #include "exchange/importer/importer.h"
 #include "io/file.h"
 #include "parser/parse.h"
+#include "schema/describe.h"
 #include "schema/json_schema.h"
-#include "schema/unit_spelling.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -12,7 +12,6 @@
 #include "pictures/image_output.h"
 #include "render/integrator.h"
 #include "render/render_state.h"
-#include "render_run/render_host.h"
 #include "render_run/render_options.h"
 #include "render_run/render_preview.h"
 #include "reports/render_report.h"
@@ -25,6 +24,19 @@
 #include <vector>
 
 namespace abbe {
+
+// A render inside of another program: who hears of it, and gets the picture.
+//
+// Signals stay the host's, which ends a render by InterruptGuard::requestStopOfAll(). Called from the thread that
+// renders, and the report from workers, too.
+class RenderHost {
+  public:
+    virtual ~RenderHost() = default;
+    // In place of one on the console. Once.
+    virtual std::unique_ptr<RenderReport> report() = 0;
+    // The image as it is in the end, also where it is written to files (RenderOptions::inMemory); not of parts.
+    virtual void take(HeldImage) = 0;
+};
 
 // What the renders of one process have in common, one after another.
 struct RenderCarry {

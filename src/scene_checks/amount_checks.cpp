@@ -1,7 +1,6 @@
-#include "scene_checks/amount_checks.h"
-
 #include "render/camera.h"
 #include "render/light.h"
+#include "scene_checks/checks.h"
 #include "scene_checks/wording.h"
 #include "schema/unit.h"
 

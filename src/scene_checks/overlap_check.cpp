@@ -2,7 +2,7 @@
 // stretches inside that do, too: stretches that overlap in part tell of solids that do so. Lines are drawn through the
 // box that both share, which is the smaller, the smaller the overlap, so that few lines find it. What touches, or lies
 // in one another with faces in common, has stretches that are nested to within rounding.
-#include "scene_checks/surface_checks.h"
+#include "scene_checks/checks.h"
 #include "scene_checks/wording.h"
 
 #include <algorithm>

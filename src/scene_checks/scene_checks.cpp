@@ -1,7 +1,6 @@
 #include "scene_checks/scene_checks.h"
 
-#include "scene_checks/amount_checks.h"
-#include "scene_checks/surface_checks.h"
+#include "scene_checks/checks.h"
 
 namespace abbe {
 

@@ -1,6 +1,5 @@
-#include "scene_checks/surface_checks.h"
-
 #include "render/light.h"
+#include "scene_checks/checks.h"
 #include "scene_checks/wording.h"
 
 #include <algorithm>

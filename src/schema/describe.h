@@ -10,6 +10,8 @@
 
 namespace abbe::schema {
 
+class Document;
+
 struct Explanation {
     bool found = false; // false: `text` says what may have been meant
     std::string text;   // lines, each with its end
@@ -53,6 +55,14 @@ std::string describeRange(const FieldInfo&);
 std::vector<std::string_view> unitsOf(const FieldInfo&);
 // What a number without a unit means: "deg", "the header's length".
 std::string_view meaningWithoutUnit(Dimension);
+
+// The spelling of a unit that is offered first for its dimension and scale, which `abbe fmt` writes: "nits" for
+// "cd-per-m2", "um" for "µm", "stops" for "EV". Empty for what is no unit.
+std::string_view canonicalUnit(std::string_view unit);
+
+// The text of a document, its units behind numbers in that spelling; nothing else changes, no number in particular. A
+// word that some definition has for a name is left as it is, as it may be meant.
+std::string withCanonicalUnits(std::string_view text, const Document&);
 
 // docs/reference/: the language as pages of Markdown, made from the field tables alone. `abbe reference pages DIR`
 // writes them, and a test says when those in the repository are not what the tables say.

@@ -1,6 +1,5 @@
 #include "base/diagnostic.h"
 #include "schema/describe.h"
-#include "schema/foreign_terms.h"
 #include "schema/foreign_words.h"
 #include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"

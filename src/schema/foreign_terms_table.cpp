@@ -1,4 +1,4 @@
-#include "schema/foreign_terms.h"
+#include "schema/foreign_words.h"
 
 #include <array>
 

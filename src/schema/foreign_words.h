@@ -3,6 +3,7 @@
 
 #include "schema/scene_tree.h"
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,5 +28,20 @@ std::string adviceForControl(std::string_view word);
 
 // A type of another program, as one of ours: "principled" -> openpbr. Nothing is certain about its properties.
 std::string_view foreignType(const TypeTable&, Kind, std::string_view word);
+
+// What people who know other programs ask `abbe explain` for: "area light", "sky texture", "clamping". Unlike the words
+// above these stand in no scene.
+struct ForeignTerm {
+    std::string_view term;  // small letters, words apart by one space: "area light"
+    std::string_view where; // "Blender, Arnold"
+    std::string_view here;  // what it is here, one or two sentences
+    std::string_view topic; // that explain() knows best about it: "light.quad"; empty: none
+};
+
+// All of them, by their letters.
+std::span<const ForeignTerm> foreignTerms();
+// Capitals and the separators between words do not matter, nor whether the word "node", "shader" or "bsdf" stands
+// behind it. Null if there is none.
+const ForeignTerm* findForeignTerm(std::string_view words);
 
 } // namespace abbe::schema

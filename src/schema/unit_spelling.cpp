@@ -1,5 +1,5 @@
-#include "schema/unit_spelling.h"
-
+#include "schema/describe.h"
+#include "schema/document.h"
 #include "schema/type.h"
 #include "schema/unit.h"
 

@@ -1,7 +1,7 @@
 // Scenes as JSON, and the spelling of units by which `abbe fmt` writes them.
 #include "language_fixture.h"
+#include "schema/describe.h"
 #include "schema/json_schema.h"
-#include "schema/unit_spelling.h"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 #include "parser/presets.h"
 #include "scene/registry.h"
 #include "schema/describe.h"
-#include "schema/foreign_terms.h"
+#include "schema/foreign_words.h"
 
 #include <algorithm>
 #include <doctest/doctest.h>
