@@ -1,9 +1,11 @@
 #include "base/enclosure.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace abbe {
 
@@ -28,7 +30,28 @@ fs::path plainPath(const fs::path& path) {
     return whole.has_filename() || !whole.has_relative_path() ? whole : whole.parent_path();
 }
 
+// Where it is, links followed as far as the path exists.
+fs::path realPlace(const fs::path& path) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+    return error ? plainPath(path) : place;
+}
+
+bool isBelowRoots(const fs::path& place, std::string_view roots) {
+    while (!roots.empty()) {
+        const std::string_view root = roots.substr(0, roots.find(':'));
+        if (!root.empty() && isBelow(place, realPlace(root))) return true;
+        roots.remove_prefix(std::min(root.size() + 1, roots.size()));
+    }
+    return false;
+}
+
 } // namespace
+
+const char* rootFolders() {
+    const char* const roots = std::getenv("ABBE_ROOT");
+    return roots && *roots ? roots : nullptr;
+}
 
 bool isBelow(const fs::path& path, const fs::path& folder) {
     const fs::path file = plainPath(path), top = plainPath(folder);
@@ -42,11 +65,22 @@ void encloseFolder(const fs::path& folder) {
 }
 
 bool mayName(const fs::path& from, const fs::path& named) {
-    const std::lock_guard lock(enclosures().mutex);
-    const fs::path asker = plainPath(from);
-    return std::ranges::all_of(enclosures().folders, [&](const fs::path& folder) {
-        return (asker != folder && !isBelow(asker, folder)) || isBelow(named, folder);
-    });
+    bool enclosed = false;
+    {
+        const std::lock_guard lock(enclosures().mutex);
+        const fs::path asker = plainPath(from);
+        for (const fs::path& folder : enclosures().folders) {
+            if (asker != folder && !isBelow(asker, folder)) continue;
+            if (!isBelow(named, folder)) return false;
+            enclosed = true;
+        }
+    }
+    const char* const roots = rootFolders();
+    if (enclosed || !roots) return true;
+    std::error_code error;
+    const fs::path own = fs::is_directory(from, error) ? from : from.parent_path();
+    const fs::path place = realPlace(named);
+    return isBelow(place, realPlace(own.empty() ? "." : own)) || isBelowRoots(place, roots);
 }
 
 } // namespace abbe

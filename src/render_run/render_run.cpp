@@ -1,6 +1,7 @@
 #include "render_run/render_run.h"
 
 #include "app/identity.h"
+#include "base/enclosure.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "checkpoints/render_identity.h"
@@ -110,6 +111,11 @@ ExitCode RenderRun::checkOutputs() {
     if (!makesPart && std::filesystem::path(summary_.image).extension() != ".exr")
         return refuse("E0431", fmt::format("the image `{}` must be an EXR", summary_.image),
                       "name it `….exr`; a PNG is written beside it", ExitCode::usage);
+    if (options_.output.empty() && !film_.output.empty() && !mayName(".", asked) &&
+        !mayName(options_.input.path, asked))
+        return refuse("E0417", fmt::format("the image `{}` is where scenes may write nothing", summary_.image),
+                      fmt::format("ABBE_ROOT is `{}`; `-o FILE` writes the image anywhere", rootFolders()),
+                      ExitCode::faulty);
     if (built_.layers.deep && !makesPart) summary_.deep = deepPath(summary_.image);
     for (const std::string& path : {summary_.image, summary_.deep}) {
         if (path.empty()) continue;

@@ -36,6 +36,22 @@ for way in ../library/ "$PWD/library/" link-; do
     expect 0 check shot/shot.scene
 done
 
+# With ABBE_ROOT it reads and writes below its own folder and below the folders that are listed.
+for way in ../library/ "$PWD/library/" link-; do
+    shot "$way"
+    ABBE_ROOT=$PWD/shot expect 1 check shot/shot.scene
+    tells err E0417 "${way}paint"
+    ABBE_ROOT=$PWD/elsewhere:$PWD/library expect 0 check shot/shot.scene
+    ABBE_ROOT=. expect 0 check shot/shot.scene
+done
+sed -i 's|output "[^"]*"|output "../elsewhere/shot.exr"|' shot/shot.scene
+mkdir -p deep
+(cd deep && ABBE_ROOT=$PWD/../library "$program" render ../shot/shot.scene -q 2>../err) && fault "an image where nothing may be written"
+tells err E0417 elsewhere
+[[ -z $(ls -A elsewhere) ]] || fault "something was written: $(ls -A elsewhere)"
+(cd deep && ABBE_ROOT=$PWD/../library "$program" render ../shot/shot.scene -q -o ../elsewhere/mine.exr) || fault "-o is not the scene's"
+rm elsewhere/*
+
 # In a pack it reads nothing but the pack: absolute paths, ../ and links that lead out of it are faults at the name.
 shot ../library/
 expect 0 pack shot/shot.scene -o shot.abz
