@@ -378,7 +378,7 @@ TEST_CASE("export: every type and property of the language" * doctest::test_suit
                                      : fmt::format("{} {}", schema::keyword(type.kind), inner));
             }
         for (const std::string& body : bodies)
-            for (const char* format : {"mitsuba", "pbrt", "gltf"}) {
+            for (const char* format : {"mitsuba", "pbrt", "gltf", "usda"}) {
                 CAPTURE(body);
                 const bool camera = type.kind == schema::Kind::camera || type.kind == schema::Kind::film;
                 const std::string text = ex.exported(format, (camera ? "scene 1\nlight sky\n" : kLit) + body + "\n");
@@ -422,7 +422,7 @@ TEST_CASE("export: no property is dropped without a word" * doctest::test_suite(
                                             : fmt::format("{} {}", schema::keyword(type.kind), text));
                 };
                 bool any = false;
-                for (const char* format : {"mitsuba", "pbrt", "gltf"}) {
+                for (const char* format : {"mitsuba", "pbrt", "gltf", "usda"}) {
                     const std::string without = ex.exported(format, body(base));
                     const std::string codes = ex.codes;
                     const std::string with = ex.exported(format, body(base.empty() ? example : base + "; " + example));
