@@ -29,7 +29,7 @@ std::string jsonValue(const Value& value) {
 // Everything is appended to one text: inline meshes are large.
 void addTree(const Node& node, std::string& out) {
     out += R"({"name":)" + jsonString(node.name());
-    if (node.allNumbers() && !node.numbers().empty()) {
+    if (node.allNumbers() && node.numbers().size() > 0) {
         out += R"(,"values":[)";
         const char* between = "";
         for (const double v : node.numbers()) {

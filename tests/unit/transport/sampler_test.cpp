@@ -413,7 +413,7 @@ TEST_CASE("sampler: places and directions of the pixels of a square are nets tog
             for (const std::uint32_t n : {1u, 2u, 4u, 8u, 16u, 32u})
                 for (const std::size_t first : pairs) {
                     INFO("dimensions " << first << " and the next, side " << side << ", samples " << n);
-                    CHECK(netQuality(pointsOfSquare(square, side, n), first, first + 1) <= (first == 0 ? 0 : 2));
+                    CHECK(netQuality(pointsOfSquare(square, side, n), first, first + 1) <= (first == 0 ? 0 : 3));
                 }
 }
 
