@@ -8,7 +8,7 @@
 #include "commands/command_table.h"
 #include "commands/farm.h"
 #include "farm/farm_engine.h"
-#include "farm/farm_pilot.h"
+#include "farm/farm_plan.h"
 #include "farm/rounds.h"
 #include "film/film_params.h"
 #include "pictures/image_output.h"

@@ -1,6 +1,5 @@
-#include "farm/farm_pilot.h"
-
 #include "base/process.h"
+#include "farm/farm_plan.h"
 
 #include <algorithm>
 #include <cmath>

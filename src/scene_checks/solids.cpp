@@ -1,8 +1,7 @@
-#include "scene_checks/solids.h"
-
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "math/warp.h"
+#include "scene_checks/checks.h"
 
 #include <algorithm>
 #include <cmath>
