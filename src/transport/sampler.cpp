@@ -2,6 +2,7 @@
 
 #include "math/multi_jitter.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -35,6 +36,16 @@ constexpr std::array<Strata, 4> kSetStrata{{{0, 2}, {2, 2}, {4, 1}, {5, 1}}};
 constexpr int kDigits = 10; // 4 × 4 pixels with 32 samples have as many strata as 9 digits tell apart
 
 } // namespace
+
+constinit const std::array<std::uint8_t, 24> PixelSquare::kOrders = [] {
+    std::array<std::uint8_t, 4> order{0, 1, 2, 3};
+    std::array<std::uint8_t, 24> all{};
+    for (std::uint8_t& packed : all) {
+        for (std::size_t i = 0; i < 4; ++i) packed = static_cast<std::uint8_t>(packed | order[i] << (2 * i));
+        std::next_permutation(order.begin(), order.end());
+    }
+    return all;
+}();
 
 constinit const PixelSquare::Shifts PixelSquare::kShifts = [] {
     // clang-format off

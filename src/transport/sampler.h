@@ -32,9 +32,13 @@ class PixelSquare {
   public:
     static constexpr int kSide = 4;
 
-    // Place of a pixel in its square: x and y by turns, so that the first four are the first 2 × 2.
-    static constexpr std::size_t place(int x, int y) {
-        return static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2);
+    // Place of a pixel in its square, of 16 of which each four are those of a 2 × 2: in an order that differs from
+    // square to square, as a pattern that is the same in all is seen. Quarters are shuffled, and the pixels of each.
+    static std::size_t place(std::uint64_t squareSeed, int x, int y) {
+        const auto quarter = static_cast<std::uint32_t>((x >> 1 & 1) | (y & 2));
+        const auto pixel = static_cast<std::uint32_t>((x & 1) | (y & 1) << 1);
+        return shuffled(mix64(squareSeed ^ 0x5be0cd19u), quarter) << 2 |
+               shuffled(mix64(squareSeed ^ (0x6c62272eu + quarter)), pixel);
     }
     // Of dimensions 8 `group` and on, the highest digit in the lowest bit as sobolBits() has them.
     static UInt8 shift(std::size_t place, int group) {
@@ -44,6 +48,11 @@ class PixelSquare {
     static std::uint32_t heroShift(std::size_t place) { return kShifts.hero[place]; }
 
   private:
+    // Where one of the 24 orders of four has i.
+    static std::size_t shuffled(std::uint64_t random, std::uint32_t i) {
+        return kOrders[(random >> 32) * 24 >> 32] >> (2 * i) & 3u;
+    }
+    static const std::array<std::uint8_t, 24> kOrders; // two bits each
     struct Shifts {
         alignas(32) std::array<std::array<std::uint32_t, kSobolDimensions>, kSide * kSide> digits{};
         std::array<std::uint32_t, kSide * kSide> hero{};
@@ -91,7 +100,7 @@ class Sampler final {
     // strata of their joint dimensions, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
     // `paired`: dimension 6 is the place within an eighth.
     void shareSquare(std::uint64_t squareSeed, int x, int y, bool paired) {
-        const std::size_t place = PixelSquare::place(x, y);
+        const std::size_t place = PixelSquare::place(squareSeed, x, y);
         const std::uint64_t scramble = mix64(squareSeed ^ 0x1f83d9abu);
         shuffleSeed_ = static_cast<std::uint32_t>(squareSeed);
         for (int g = 0; g < groups_; ++g) {
