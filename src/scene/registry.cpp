@@ -59,6 +59,7 @@
 #include <concepts>
 #include <map>
 #include <variant>
+#include <utility>
 
 namespace abbe {
 
@@ -89,12 +90,12 @@ template <typename Params, auto make> RegistryEntry material(schema::TypeInfo ty
             const schema::PlaceOf where = [&](std::string_view p) { return placeOf(context.definition, p); };
             if (!checkParams(own, where, context.diagnostics())) return {};
         }
+        decltype(MadeMaterial::inside) inside{};
+        if constexpr (requires { insideOf(own); }) inside = insideOf(own);
         if constexpr (std::invocable<decltype(make), const Params&, const MaterialContext&>)
-            return {make(own, context), params.modifiers, {}}; // it consists of others
-        else if constexpr (requires { insideOf(own); })
-            return {make(own), params.modifiers, insideOf(own)};
+            return {make(own, context), params.modifiers, std::move(inside)}; // it consists of others, or keeps tables
         else
-            return {make(own), params.modifiers, {}};
+            return {make(own), params.modifiers, std::move(inside)};
     };
     return {std::move(type), maker};
 }
