@@ -58,8 +58,8 @@
 
 #include <concepts>
 #include <map>
-#include <variant>
 #include <utility>
+#include <variant>
 
 namespace abbe {
 
