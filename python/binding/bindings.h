@@ -11,5 +11,6 @@ void bindImage(nanobind::module_&);
 void bindRender(nanobind::module_&);
 void bindArrays(nanobind::module_&);
 void bindSpectrum(nanobind::module_&);
+void bindMaterial(nanobind::module_&);
 
 } // namespace abbe::python

@@ -27,4 +27,5 @@ NB_MODULE(_abbe, m) {
     abbe::python::bindRender(m);
     abbe::python::bindArrays(m);
     abbe::python::bindSpectrum(m);
+    abbe::python::bindMaterial(m);
 }

@@ -4,6 +4,9 @@ from abbe._image import ErrorEstimate as ErrorEstimate
 from abbe._image import Image as Image
 from abbe._image import merge as merge
 from abbe._image import read_image as read_image
+from abbe._material import Material as Material
+from abbe._material import Samples as Samples
+from abbe._material import material as material
 from abbe._scene import Scene as Scene
 from abbe._scene import load as load
 from abbe._schema import __version__ as __version__
