@@ -94,7 +94,7 @@ std::string MaterialHandle::obstacle() const {
     if (material_->isBoundary()) return "a boundary has no surface: light goes straight on";
     if (!material_->reversible())
         return "hair scatters by where its fibre is hit, not by a normal: it is no surface to evaluate";
-    if (material_->usesTextures() || material_->bends())
+    if (material_->usesTextures())
         return "a texture changes it over the surface; evaluate a material of plain values";
     return {};
 }

@@ -57,7 +57,7 @@ class MaterialHandle {
     BuiltScene built_;
     std::vector<std::string> names_;
     const Material* material_ = nullptr;
-    SurfaceHit hit_;
+    SurfaceHit hit_; // `arrival` stays 0: a sheet has then both of its sides
 };
 
 } // namespace abbe::python

@@ -110,6 +110,28 @@ class Values(unittest.TestCase):
         np.testing.assert_array_equal(m.eval(wo, s.wi, NM), 0)
         np.testing.assert_array_equal(m.pdf(wo, s.wi), 0)
 
+    def test_lobes_that_are_specular_beside_others(self) -> None:
+        coated = abbe.material("layered", base=abbe.node("diffuse", reflectance=0.5), ior=1.5)
+        for nm in (NM, NM[:8], NM[:1]):
+            s = coated.sample(UP, numbers(20000), nm)
+            self.assertTrue(0 < s.specular.mean() < 1)
+            reflected = (s.weight * s.specular[:, None]).mean(axis=0)
+            np.testing.assert_allclose(reflected, fresnel(1.5), rtol=0.05)
+        sheet = abbe.material("mix", first=abbe.node("conductor", index="metal Ag"), second=abbe.node("thin-dielectric", ior=1.5), amount=0.25)
+        silver = abbe.material("conductor", index="metal Ag").sample(UP, [0.5, 0.5, 0.5], NM).weight[0]
+        for count in (13, 8):  # by blocks, and in one block
+            s = sheet.sample(UP, numbers(40000), NM[:count])
+            up = s.wi[:, 2] > 0
+            r = fresnel(1.5)
+            np.testing.assert_allclose((s.weight * up[:, None]).mean(axis=0), 0.75 * silver[:count] + 0.25 * 2 * r / (1 + r), rtol=0.02)
+
+    def test_sheets_have_two_sides(self) -> None:
+        m = abbe.material("two-sided", front=abbe.node("diffuse", reflectance=0.8), back=abbe.node("diffuse", reflectance=0.1))
+        np.testing.assert_allclose(m.eval(UP, UP, 550), 0.8 / np.pi, rtol=1e-5)
+        down = (0.0, 0.0, -1.0)
+        np.testing.assert_allclose(m.eval(down, down, 550), 0.1 / np.pi, rtol=1e-5)
+        np.testing.assert_array_equal(m.eval(down, UP, 550), 0)
+
     def test_opacity(self) -> None:
         self.assertEqual(abbe.material("diffuse").opacity, 1)
         self.assertAlmostEqual(abbe.material("diffuse", opacity=0.25).opacity, 0.25)
