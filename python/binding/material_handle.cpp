@@ -25,10 +25,14 @@ Wavelengths wavelengthsOf(const Float8& nm) { return Wavelengths::at(Spectrum(nm
 // they are those of a path; fewer are repeated.
 std::size_t drawnIndex(int lane, std::size_t count) { return static_cast<std::size_t>(lane) * count / kLanes; }
 
+// Those that differ are seen to differ: whether light disperses depends on it.
 Wavelengths drawing(std::span<const double> nanometres) {
     Float8 nm;
     for (int lane = 0; lane < kLanes; ++lane)
         nm[lane] = static_cast<float>(nanometres[drawnIndex(lane, nanometres.size())]);
+    const auto other = std::ranges::find_if(nanometres, [&](double one) { return one != nanometres[0]; });
+    const bool same = maxLane(abs(Spectrum(nm) - Spectrum(nm[0]))) == 0;
+    if (same && other != nanometres.end()) nm[kLanes - 1] = static_cast<float>(*other);
     return wavelengthsOf(nm);
 }
 
@@ -94,8 +98,7 @@ std::string MaterialHandle::obstacle() const {
     if (material_->isBoundary()) return "a boundary has no surface: light goes straight on";
     if (!material_->reversible())
         return "hair scatters by where its fibre is hit, not by a normal: it is no surface to evaluate";
-    if (material_->usesTextures())
-        return "a texture changes it over the surface; evaluate a material of plain values";
+    if (material_->usesTextures()) return "a texture changes it over the surface; evaluate a material of plain values";
     return {};
 }
 

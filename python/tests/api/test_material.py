@@ -90,6 +90,8 @@ class Values(unittest.TestCase):
             np.testing.assert_array_equal(s.weight[0] > 0, np.array([nm, *NM]) == nm)
             bent.append(sine)
         self.assertTrue((np.diff(bent) > 0).all())  # blue is bent more
+        hidden = np.array([550.0] * 100 + [600.0])  # the other wavelength is at no even step
+        np.testing.assert_array_equal(m.sample(wo, [0.5, 0.5, 0.99], hidden).weight[0] > 0, hidden == 550)
 
     def test_metals_have_their_colour(self) -> None:
         def mirrored(metal: str) -> np.ndarray:
