@@ -194,8 +194,8 @@ class Laws(unittest.TestCase):
         for name in ("diffuse", "gold", "brushed"):
             m = rough_materials()[name]
             forth, back = m.eval(a, b, NM) / b[:, 2:], m.eval(b, a, NM) / a[:, 2:]
-            single = name == "diffuse"
-            np.testing.assert_allclose(forth, back, rtol=1e-4 if single else 0.35, atol=1e-5, err_msg=name)
+            # What is lost between facets is given back by the share of wo alone [Turquin2019]: not quite reciprocal.
+            np.testing.assert_allclose(forth, back, rtol=1e-5 if name == "diffuse" else 0.2, err_msg=name)
 
     def test_wavelengths_are_evaluated_by_themselves(self) -> None:
         for name, m in rough_materials().items():
