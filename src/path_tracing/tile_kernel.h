@@ -72,7 +72,7 @@ template <EffectBits E> class TileKernel {
         std::uint32_t counted = 0;
         sampler_.startPixel(seed, context_.settings.technique.numbers, context_.choices, context_.strata);
         const bool disperses = context_.scene.effects.has(Effect::dispersion) || context_.settings.asIfDispersive;
-        sampler_.shareSquare(seedOfSquare(x, y, r), x, y, !disperses);
+        sampler_.shareWavelengths(seedOfSquare(x, y, r), x, y, !disperses);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
         if constexpr (Walk::kLightPaths)
@@ -99,7 +99,7 @@ template <EffectBits E> class TileKernel {
         result_.counters.paths += range.last - range.first;
     }
 
-    // Of the square of 4 × 4 pixels whose joint dimensions are stratified together.
+    // Of the square of 4 × 4 pixels whose wavelengths are stratified together.
     std::uint64_t seedOfSquare(int x, int y, int replicate) const {
         const std::uint64_t place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y >> 2)) << 32) | static_cast<std::uint32_t>(x >> 2);

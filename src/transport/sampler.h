@@ -7,7 +7,6 @@
 #include "math/vec.h"
 #include "render/technique.h"
 
-#include <array>
 #include <bit>
 
 namespace abbe {
@@ -20,46 +19,6 @@ struct VertexSample {
     float lobe; // which lobe
 };
 
-// What each of the 4 × 4 pixels of a square adds to the digits of a point that all of them share, before its digits are
-// scrambled alike for all. Each pixel then has a scrambled Sobol sequence as it would have by itself; together they
-// have one point in each of as many strata as there are points, so that what the points of one pixel leave out its
-// neighbours have, and the mean over the square errs less than pixels by themselves would have it [Ahmed2020].
-//
-// A digit is added where an odd number of the place's four bits are among those of its row: a digital shift, which
-// keeps every net. Of any four rows in succession none is a sum of the others, hence the strata with any power of two
-// of samples; which rows was found by search (docs/decisions/042-squares-of-pixels.md).
-class PixelSquare {
-  public:
-    static constexpr int kSide = 4;
-
-    // Place of a pixel in its square, of 16 of which each four are those of a 2 × 2: in an order that differs from
-    // square to square, as a pattern that is the same in all is seen. Quarters are shuffled, and the pixels of each.
-    static std::size_t place(std::uint64_t squareSeed, int x, int y) {
-        const auto quarter = static_cast<std::uint32_t>((x >> 1 & 1) | (y & 2));
-        const auto pixel = static_cast<std::uint32_t>((x & 1) | (y & 1) << 1);
-        return shuffled(mix64(squareSeed ^ 0x5be0cd19u), quarter) << 2 |
-               shuffled(mix64(squareSeed ^ (0x6c62272eu + quarter)), pixel);
-    }
-    // Of dimensions 8 `group` and on, the highest digit in the lowest bit as sobolBits() has them.
-    static UInt8 shift(std::size_t place, int group) {
-        return *reinterpret_cast<const UInt8*>(kShifts.digits[place].data() + 8 * group);
-    }
-    // Of the number of the eighth that the hero is in.
-    static std::uint32_t heroShift(std::size_t place) { return kShifts.hero[place]; }
-
-  private:
-    // Where one of the 24 orders of four has i.
-    static std::size_t shuffled(std::uint64_t random, std::uint32_t i) {
-        return kOrders[(random >> 32) * 24 >> 32] >> (2 * i) & 3u;
-    }
-    static const std::array<std::uint8_t, 24> kOrders; // two bits each
-    struct Shifts {
-        alignas(32) std::array<std::array<std::uint32_t, kSobolDimensions>, kSide * kSide> digits{};
-        std::array<std::uint32_t, kSide * kSide> hero{};
-    };
-    static const Shifts kShifts;
-};
-
 // Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first 24 dimensions
 // are joint, in the order of what their quality is worth (docs/decisions/010-sampler-dimensions.md): BSDF of the first
 // vertex 0-1, light of the second 2-3, light of the first 4-5, wavelengths 6, film 7-8, BSDF of the second 9-10, light
@@ -69,9 +28,8 @@ class PixelSquare {
 //
 // Dimension 6 is the hero wavelength or, where no density depends on it, the place of all eight within an eighth; which
 // of them is the hero then follows from the same point, as its place in the dimension that makes a (0, 2)-sequence of
-// it. So both are stratified by themselves and as one number (docs/decisions/037-paired-wavelengths.md).
-//
-// The pixels of a square divide the strata of the joint dimensions among them (PixelSquare).
+// it. So both are stratified by themselves and as one number, and so they are over squares of pixels
+// (docs/decisions/037-paired-wavelengths.md).
 //
 // Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
 // every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
@@ -88,38 +46,31 @@ class Sampler final {
         numbers_ = numbers;
         strata_ = strata;
         groups_ = choices ? 3 : 2;
-        shuffleSeed_ = seed_;
-        for (int g = 0; g < groups_; ++g) {
-            dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
-            shifts_[g] = UInt8{};
-        }
-        heroShift_ = 0;
+        for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
+        shift_ = UInt8{};
         paired_ = false;
     }
     // After startPixel(), for the pixel at (x, y): the 4 × 4 pixels of its square, and the 2 × 2 within, share the
-    // strata of their joint dimensions, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
+    // strata of their wavelengths, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
     // `paired`: dimension 6 is the place within an eighth.
-    void shareSquare(std::uint64_t squareSeed, int x, int y, bool paired) {
-        const std::size_t place = PixelSquare::place(squareSeed, x, y);
-        const std::uint64_t scramble = mix64(squareSeed ^ 0x1f83d9abu);
-        shuffleSeed_ = static_cast<std::uint32_t>(squareSeed);
-        for (int g = 0; g < groups_; ++g) {
-            dimensionSeeds_[g] = dimensionSeeds(static_cast<std::uint32_t>(scramble), 8 * g);
-            shifts_[g] = PixelSquare::shift(place, g);
-        }
-        heroShift_ = PixelSquare::heroShift(place) ^ static_cast<std::uint32_t>(scramble >> 61);
+    void shareWavelengths(std::uint64_t squareSeed, int x, int y, bool paired) {
+        const int place = (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
+        const std::uint32_t first = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
+        dimensionSeeds_[0][kWavelength] = static_cast<std::uint32_t>(squareSeed);
+        shift_[kWavelength] = first ^ kPlaces.within[place];
+        heroShift_ = heroOf(first) ^ kPlaces.hero[place] ^ static_cast<std::uint32_t>(squareSeed >> 61);
         paired_ = paired;
     }
     void start(std::uint32_t index) {
         index_ = index;
         if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
             return fillOther(0, true, joint_);
-        const std::uint32_t shuffled = shuffleIndex(index, shuffleSeed_);
+        const std::uint32_t shuffled = shuffleIndex(index, seed_);
         const UInt8 first = sobolBits(shuffled, 0);
         hero_ = heroOf(first[kWavelength]) ^ heroShift_;
-        scrambleToFloats(first ^ shifts_[0], dimensionSeeds_[0], joint_);
+        scrambleToFloats(first ^ shift_, dimensionSeeds_[0], joint_);
         for (int g = 1; g < groups_; ++g)
-            scrambleToFloats(sobolBits(shuffled, 8 * g) ^ shifts_[g], dimensionSeeds_[g], joint_ + 8 * g);
+            scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
     Vec2 film() const { return {joint_[7], joint_[8]}; }
     // 53 bits, those beyond the sequence's 24 and the hero's 3 at random: a table of wavelengths has cells less likely
@@ -160,6 +111,25 @@ class Sampler final {
   private:
     static constexpr int kWavelength = 6; // its joint dimension
 
+    // What the places of a square add to the digits of the two numbers, as sobolBits() has them. The rows were found by
+    // search: with any number 1, 2, … 32 of samples of each pixel, 2 × 2 and 4 × 4 pixels have one in each of as many
+    // strata of either number, and of both as one.
+    struct Places {
+        std::uint32_t within[16], hero[16];
+    };
+    static constexpr Places places() {
+        constexpr std::uint32_t withinRows[] = {15, 6, 3, 13, 7, 1, 2, 14, 11, 15, 14, 10}, heroRows[] = {11, 13, 7};
+        Places all{};
+        for (std::uint32_t place = 0; place < 16; ++place) {
+            for (int digit = 0; digit < 12; ++digit)
+                all.within[place] |= static_cast<std::uint32_t>(std::popcount(place & withinRows[digit]) & 1) << digit;
+            for (int digit = 0; digit < 3; ++digit)
+                all.hero[place] |= static_cast<std::uint32_t>(std::popcount(place & heroRows[digit]) & 1)
+                                   << (2 - digit);
+        }
+        return all;
+    }
+    static const Places kPlaces;
     // Which eighth the hero is in: three digits of the second dimension of the Faure sequence in base 2 [Faure1982],
     // if the digits of the first are these, the highest in the lowest bit.
     static std::uint32_t heroOf(std::uint32_t digits) {
@@ -179,15 +149,17 @@ class Sampler final {
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
     UInt8 dimensionSeeds_[3] = {};
-    UInt8 shifts_[3] = {};        // of the digits of the joint dimensions
-    std::uint32_t heroShift_ = 0; // of hero_
+    UInt8 shift_ = {};            // of the digits of the wavelengths: counted from the first sample's
+    std::uint32_t heroShift_ = 0; // of hero_, likewise
     std::uint32_t hero_ = 0;      // the eighth in which it is
     bool paired_ = false;
     int groups_ = 0;
     std::uint64_t stream_ = 0;
-    std::uint32_t seed_ = 0, shuffleSeed_ = 0, index_ = 0; // shuffleSeed_: of the joint dimensions
+    std::uint32_t seed_ = 0, index_ = 0;
     std::uint32_t strata_ = 1;
     Technique::Numbers numbers_ = Technique::Numbers::sobol;
 };
+
+inline constexpr Sampler::Places Sampler::kPlaces = Sampler::places();
 
 } // namespace abbe

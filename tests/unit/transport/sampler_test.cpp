@@ -3,7 +3,6 @@
 #include "support/statistics.h"
 #include "transport/sampler.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -323,7 +322,7 @@ TEST_CASE("sampler: hero and place within an eighth are a (0, m, 2)-net") {
         for (std::uint32_t m = 1; m <= 11; ++m)
             for (std::uint32_t k = 0; k <= std::min(m, 3u); ++k) { // intervals of 2^-k by 2^-(m-k)
                 Sampler s = pixelSampler(seed);
-                s.shareSquare(mix64(seed + 3), 2, 1, true);
+                s.shareWavelengths(mix64(seed + 3), 2, 1, true);
                 std::set<std::uint32_t> met;
                 for (std::uint32_t i = 0; i < 1u << m; ++i) {
                     s.start(i);
@@ -346,7 +345,7 @@ TEST_CASE("sampler: squares of pixels share the strata of their wavelengths") {
                     for (int y = 0; y < side; ++y)
                         for (int x = 0; x < side; ++x) {
                             Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(8 * y + x)));
-                            s.shareSquare(mix64(square), x - 4, y + 4, paired);
+                            s.shareWavelengths(mix64(square), x - 4, y + 4, paired);
                             for (std::uint32_t i = 0; i < n; ++i) {
                                 s.start(i);
                                 heroes.insert(static_cast<std::uint32_t>(s.wavelength() * strata));
@@ -359,107 +358,23 @@ TEST_CASE("sampler: squares of pixels share the strata of their wavelengths") {
                 }
 }
 
-// The points of all pixels of a square at the origin's corner, `side` by `side` with n samples each.
-std::vector<Point> pointsOfSquare(std::uint64_t square, int side, std::uint32_t n) {
-    std::vector<Point> points;
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x) {
-            Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(8 * y + x)));
-            s.shareSquare(mix64(square), x - 4, y + 4, true);
-            for (std::uint32_t i = 0; i < n; ++i) {
-                s.start(i);
-                points.push_back(jointPoint(s));
-                points.back()[6] = static_cast<float>(wavelengthPair(s).within);
-            }
-        }
-    return points;
-}
-
-TEST_CASE("sampler: squares of pixels share the strata of every joint dimension") {
-    for (const std::uint64_t square : {1ull, 0x123456789abcdef0ull})
-        for (const int side : {2, 4})
-            for (const std::uint32_t n : {1u, 2u, 4u, 8u, 16u, 32u}) {
-                const auto strata = static_cast<std::uint32_t>(side * side) * n;
-                const std::vector<Point> points = pointsOfSquare(square, side, n);
-                for (std::size_t d = 0; d < kSobolDimensions; ++d) {
-                    std::set<std::uint32_t> met;
-                    for (const Point& p : points) met.insert(cell(p[d], strata));
-                    INFO("dimension " << d << ", side " << side << ", samples " << n);
-                    CHECK(met.size() == strata);
-                }
-            }
-}
-
-// The least t for which points are a (t, m, 2)-net in dimensions a and b: 2^t in every elementary interval of 2^(t -
-// m).
-int netQuality(const std::vector<Point>& points, std::size_t a, std::size_t b) {
-    const int m = std::countr_zero(points.size());
-    for (int t = 0; t < m; ++t) {
-        bool even = true;
-        for (int k = 0; k <= m - t && even; ++k) {
-            std::vector<int> counts(std::size_t{1} << (m - t), 0);
-            for (const Point& p : points) ++counts[cell(p[a], 1u << k) << (m - t - k) | cell(p[b], 1u << (m - t - k))];
-            even = std::ranges::all_of(counts, [&](int count) { return count == 1 << t; });
-        }
-        if (even) return t;
-    }
-    return m;
-}
-
-TEST_CASE("sampler: places and directions of the pixels of a square are nets together") {
-    constexpr std::size_t pairs[] = {0, 2, 4, 7, 9, 11, 13, 16};
-    for (const std::uint64_t square : {1ull, 0x123456789abcdef0ull})
-        for (const int side : {2, 4})
-            for (const std::uint32_t n : {1u, 2u, 4u, 8u, 16u, 32u})
-                for (const std::size_t first : pairs) {
-                    INFO("dimensions " << first << " and the next, side " << side << ", samples " << n);
-                    CHECK(netQuality(pointsOfSquare(square, side, n), first, first + 1) <= (first == 0 ? 0 : 3));
-                }
-}
-
-TEST_CASE("sampler: a pixel of a square has as good a sequence as one by itself") {
-    for (int place = 0; place < 16; ++place)
-        for (std::uint32_t m = 1; m <= 8; ++m) {
-            Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(place)));
-            s.shareSquare(mix64(77), place % 4, place / 4, true);
-            std::vector<Point> points;
-            for (std::uint32_t i = 0; i < 1u << m; ++i) {
-                s.start(i);
-                points.push_back(jointPoint(s));
-            }
-            INFO("place " << place << ", " << points.size() << " samples");
-            CHECK(netQuality(points, 0, 1) == 0);
-            for (std::size_t d = 0; d < kSobolDimensions; ++d) {
-                std::set<std::uint32_t> met;
-                for (const Point& p : points) met.insert(cell(p[d], 1u << m));
-                CHECK(met.size() == points.size());
-            }
-        }
-}
-
-TEST_CASE("sampler: the points of each place in a square are uniform, and squares are independent") {
+TEST_CASE("sampler: the wavelengths of each place in a square are uniform, and squares are independent") {
     std::vector<double> pValues;
     for (int place = 0; place < 16; ++place) {
-        constexpr std::size_t kinds = kSobolDimensions + 1; // and the wavelengths in full
-        std::vector<std::vector<double>> one(kinds, std::vector<double>(256)), next = one;
-        std::array<double, kinds> before{};
+        std::vector<double> one(256, 0), next(256, 0);
+        double before = 0;
         constexpr int squares = 1 << 14;
         for (std::uint64_t square = 0; square < squares; ++square) {
             Sampler s = pixelSampler(combine64(5, square * 16 + static_cast<std::uint64_t>(place)));
-            s.shareSquare(combine64(77, square), place % 4, place / 4, square % 2 == 0);
+            s.shareWavelengths(combine64(77, square), place % 4, place / 4, square % 2 == 0);
             s.start(static_cast<std::uint32_t>(square % 5));
-            const Point p = jointPoint(s);
-            for (std::size_t d = 0; d < kinds; ++d) {
-                const double u = d < kSobolDimensions ? static_cast<double>(p[d]) : s.wavelength();
-                ++one[d][static_cast<std::size_t>(u * 256)];
-                ++next[d][static_cast<std::size_t>(u * 16) * 16 + static_cast<std::size_t>(before[d] * 16)];
-                before[d] = u;
-            }
+            const double u = s.wavelength();
+            ++one[static_cast<std::size_t>(u * 256)];
+            ++next[static_cast<std::size_t>(u * 16) * 16 + static_cast<std::size_t>(before * 16)];
+            before = u;
         }
-        for (std::size_t d = 0; d < kinds; ++d) {
-            pValues.push_back(evenness(one[d], squares));
-            pValues.push_back(evenness(next[d], squares));
-        }
+        pValues.push_back(evenness(one, squares));
+        pValues.push_back(evenness(next, squares));
     }
     CHECK(*std::min_element(pValues.begin(), pValues.end()) > sidak(kLevel, static_cast<int>(pValues.size())));
     CHECK(kolmogorovUniform(pValues) > kLevel);
