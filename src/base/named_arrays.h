@@ -17,7 +17,9 @@ namespace abbe {
 struct NamedArrays {
     std::map<std::string, std::span<const float>, std::less<>> floats;
     std::map<std::string, std::span<const std::uint32_t>, std::less<>> integers;
-    std::array<int, 3> size{}; // of a picture: width, height, channels
+    std::map<std::string, std::span<const std::uint8_t>, std::less<>> bytes;
+    std::array<int, 3> size{}; // of a picture: width, height, channels; of a volume: voxels along x, y, z
+    std::array<double, 6> place{1, 1, 1, 0, 0, 0}; // of a volume: size of a voxel and middle of the first, m
     std::shared_ptr<const void> owner;
 
     // Empty if there are none of that name.

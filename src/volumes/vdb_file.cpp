@@ -1,6 +1,7 @@
 #include "volumes/vdb_file.h"
 
 #include "base/memory_limit.h"
+#include "base/named_arrays.h"
 #include "base/process.h"
 #include "base/program_folder.h"
 #include "volumes/vdb_message.h"
@@ -231,6 +232,7 @@ std::string subjectOf(const std::string& path) { return fmt::format("`{}`", path
 } // namespace
 
 std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, std::span<const VdbRequest> requests) {
+    if (const auto arrays = findArrays(path)) return gridsOf(*arrays, path, requests);
     if (auto fault = checkReadable(path)) return *fault;
     std::vector<std::string> arguments{"read", path};
     for (const VdbRequest& r : requests) {

@@ -13,6 +13,8 @@
 
 namespace abbe {
 
+struct NamedArrays;
+
 struct VdbFault {
     enum class Kind : std::uint8_t {
         file = 0,  // not there, not readable, not writable
@@ -52,8 +54,16 @@ struct VdbGrid {
 
 // Reads the grids in the order asked for. Fields are made fit for rendering: values that are not finite or, for
 // amounts, negative become 0 (and are counted in the notes); so do the background and inactive voxels; doubles, halves
-// and integers become float; masks become 0 and 1. Safe to call from several threads. Throws std::bad_alloc only.
+// and integers become float; masks become 0 and 1. Arrays in memory may be named in the place of a file. Safe to call
+// from several threads. Throws std::bad_alloc only.
 std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, std::span<const VdbRequest> requests);
+
+// In array_grid.cpp: the grids asked for of arrays in memory (base/named_arrays.h), as readVdb() gives them for a file
+// with the same values: of one number or three for each of size[0] × size[1] × size[2] voxels, x fastest, of which the
+// first is voxel (0, 0, 0), placed by `place`. Numbers must be finite, and amounts not negative: those who made the
+// arrays can be told. `name` is what messages call them. Throws std::bad_alloc only.
+std::variant<std::vector<VdbGrid>, VdbFault> gridsOf(const NamedArrays&, const std::string& name,
+                                                     std::span<const VdbRequest> requests);
 
 // What a file says about one of its grids, and what is found in it.
 struct VdbGridInfo {

@@ -1,4 +1,4 @@
-"""Geometry and pictures out of numpy arrays, without a file: the renderer reads them where they are."""
+"""Geometry, pictures and volumes out of numpy arrays, without a file: the renderer reads them where they are."""
 
 from __future__ import annotations
 
@@ -21,6 +21,27 @@ _SHAPES = {
     ("shape", "curves"): ("points", "counts", "radii"),
     ("light", "mesh"): ("points", "faces"),
     ("light", "environment"): ("image",),
+    ("volume", "vdb"): ("density", "temperature", "flame", "color", "velocity"),
+}
+# Numbers of a voxel, where it is not one.
+_OF_THREE = ("color", "velocity")
+_MOST_VOXELS = 1 << 26  # along an axis: kFarthestVoxel
+_PLACE = ("bounds", "voxel_size", "origin")
+
+
+# What `help(abbe.Scene.volume)` says beside the words of the language.
+ARRAYS_DOC = {
+    "volume": """Grids of `vdb` out of numpy arrays, without a file:
+    density: array (z, y, x) of float32, none below 0; its grid is the density
+    temperature: array (z, y, x), in kelvin
+    flame: array (z, y, x), the amount of what emits
+    color: array (z, y, x, 3), linear Rec. 709 within 0 and 1
+    velocity: array (z, y, x, 3), the components x, y, z in m/s
+    bounds: ((x0, y0, z0), (x1, y1, z1)) in m, what the voxels fill together; before `transform`
+    voxel_size: in its place the edge of a voxel in m, or three of them
+    origin: with voxel_size, (x0, y0, z0) in m; default (0, 0, 0)
+    Values are those in the middles of voxels, linear between them, and fall to 0 over the voxel beyond the outermost. All arrays of a volume
+    have one shape. ValueError and TypeError at once for other shapes and types, numbers that are not finite, amounts below 0.""",
 }
 
 
@@ -106,6 +127,8 @@ def take_arrays(
     """Properties without those that arrays state, and the line for these; `inline` makes lines of them for a text."""
     by_name = {language_name(keyword): keyword for keyword in properties}
     known = _SHAPES.get((kind, type_name or ""), ())
+    if (kind, type_name) == ("volume", "vdb"):
+        return _take_volume(properties)
     main = next((name for name in ("points", "image") if name in known and name in by_name), None)
     if main is None or not is_array(properties[by_name[main]]):
         return dict(properties), None
@@ -144,3 +167,75 @@ def _geometry(kind: str, taken: Mapping[str, Any]) -> Any:
     if "radii" in floats and (floats["radii"] < 0).any():
         raise ValueError("radii: one is below 0")
     return _abbe.ArraysHandle(kind, floats, integers, (corners, 0, 0))
+
+
+def _grid(name: str, value: Any) -> NDArray[np.float32]:
+    shape = "(z, y, x, 3)" if name in _OF_THREE else "(z, y, x)"
+    made = _floats(name, value)
+    if made.ndim != (4 if name in _OF_THREE else 3) or 0 in made.shape or (name in _OF_THREE and made.shape[3] != 3):
+        raise ValueError(f"{name}: an array of shape {shape} is expected, not {made.shape}")
+    if max(made.shape[:3]) > _MOST_VOXELS:
+        raise ValueError(f"{name}: {max(made.shape[:3])} voxels along an axis; the most is {_MOST_VOXELS}")
+    if name not in _OF_THREE and made.min() < 0:
+        raise ValueError(f"{name}: number {int(np.argmax(made < 0))} is {made.min() if made.size == 1 else made[made < 0][0]}, below 0")
+    return made
+
+
+def _three(what: str, value: Any) -> NDArray[np.float64]:
+    """Three lengths in metres."""
+    try:
+        made = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        made = np.array(np.nan)
+    if made.shape != (3,) or not np.isfinite(made).all():
+        raise ValueError(f"{what}: three numbers are expected, in metres, not {value!r}")
+    return made
+
+
+def _place(properties: Mapping[str, Any], counts: tuple[int, ...]) -> tuple[float, ...]:
+    """Size of a voxel and middle of the first one; `counts` along x, y, z."""
+    bounds, voxel, origin = (properties.get(name) for name in _PLACE)
+    if (bounds is None) == (voxel is None):
+        raise TypeError("a volume of arrays needs either `bounds`, ((x0, y0, z0), (x1, y1, z1)) in metres, or `voxel_size`")
+    if bounds is not None:
+        if origin is not None:
+            raise TypeError("origin: it goes with `voxel_size`; `bounds` say where the volume begins")
+        if not isinstance(bounds, (tuple, list, np.ndarray)) or len(bounds) != 2:
+            raise ValueError(f"bounds: ((x0, y0, z0), (x1, y1, z1)) is expected, not {bounds!r}")
+        lower, upper = _three("bounds", bounds[0]), _three("bounds", bounds[1])
+        size = (upper - lower) / counts
+    else:
+        lower = _three("origin", (0, 0, 0) if origin is None else origin)
+        size = _three("voxel_size", (voxel,) * 3 if np.ndim(voxel) == 0 else voxel)
+    if not (size > 0).all():
+        raise ValueError(f"{'bounds' if voxel is None else 'voxel_size'}: voxels of {tuple(size.tolist())} m have no volume")
+    return (*size.tolist(), *(lower + size / 2).tolist())
+
+
+def _take_volume(properties: Mapping[str, Any]) -> tuple[dict[str, Any], ArraysLine | None]:
+    known = _SHAPES["volume", "vdb"]
+    taken = {name: properties[name] for name in known if is_array(properties.get(name))}
+    given = [name for name in _PLACE if properties.get(name) is not None]
+    if not taken:
+        if given:
+            raise TypeError(f"{given[0]}: it places arrays, but none is given; `transform` places a file")
+        return dict(properties), None
+    if "file" in properties:
+        raise TypeError(f"{next(iter(taken))}: an array stands beside a file; all grids of a volume are arrays, or all are of the file")
+    for name in known:
+        if name not in taken and (name == "density" or properties.get(name) is not None):
+            raise TypeError(f"{name}: an array is expected beside the array {next(iter(taken))}")
+    grids = {name: _grid(name, value) for name, value in taken.items()}
+    shape = grids["density"].shape
+    for name, grid in grids.items():
+        if grid.shape[:3] != shape:
+            raise ValueError(f"{name}: it has {grid.shape[:3]} voxels, the density {shape}")
+    counts = (shape[2], shape[1], shape[0])
+    rest = {name: value for name, value in properties.items() if name not in _PLACE and name not in taken}
+    rest |= {name: name for name in grids}  # the grids by name
+    handle = _abbe.ArraysHandle("volume", grids, {}, counts, {}, _place(properties, counts))
+
+    def refuse() -> list[Line]:
+        raise ValueError(f"the arrays {', '.join(grids)} of a volume have no place in a text: write them as an OpenVDB file, and name that")
+
+    return rest, ArraysLine(handle, "file", refuse)

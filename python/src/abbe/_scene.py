@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from abbe import _abbe
-from abbe._arrays import take_arrays
+from abbe._arrays import ARRAYS_DOC, take_arrays
 from abbe._errors import Diagnostic, SceneError, diagnostics_of, one_fault, raise_errors
 from abbe._image import Image, Progress, outcome
 from abbe._schema import KINDS, TYPES, default_type, find_type, kind_doc, language_name
@@ -324,7 +324,7 @@ def _add_kind(kind: str) -> None:
         return self._define(kind, head, properties)
 
     method.__name__ = method.__qualname__ = _METHODS.get(kind, kind)
-    method.__doc__ = kind_doc(kind)
+    method.__doc__ = "\n\n".join([kind_doc(kind), *([ARRAYS_DOC[kind]] if kind in ARRAYS_DOC else [])])
     setattr(Definitions, method.__name__, method)
 
 
