@@ -128,9 +128,15 @@ class Conversion {
         : from_(from), to_(to), asked_(asked), channels_(asked.channels) {}
 
     std::string run() {
+        if (asked_.pixels) {
+            if (asked_.first < 0 || asked_.pixels->channels < asked_.first + channels_)
+                return "it has too few channels";
+            kind_ = abbeFaultOfResult;
+            return writeLevels({asked_.pixels->width, asked_.pixels->height});
+        }
         if (std::string reason = openSource(); !reason.empty()) return reason;
         kind_ = abbeFaultOfResult;
-        return writeLevels();
+        return writeLevels({input_->spec().width, input_->spec().height});
     }
     AbbeFaultKind faultKind() const { return kind_; }
 
@@ -154,25 +160,46 @@ class Conversion {
 
     static int rowsAtOnce(const OIIO::ImageSpec& source) { return source.tile_height > 0 ? source.tile_height : 16; }
 
-    std::string writeLevels() {
-        const OIIO::ImageSpec source = input_->spec();
+    std::string writeLevels(Size size) {
         OIIO::attribute("tiff:half", 1);
         output_ = OIIO::ImageOutput::create("tiff");
         if (!output_) return orElse(OIIO::geterror(), "OpenImageIO cannot write TIFF");
-        Size size{source.width, source.height};
         auto mode = OIIO::ImageOutput::Create; // in a TIFF, levels of a texture are further images
         std::unique_ptr<Spool> current;
         for (int number = 0;; ++number, mode = OIIO::ImageOutput::AppendSubimage) {
             if (!output_->open(to_, specOf(size), mode)) return orElse(output_->geterror(), kFull);
             auto next = std::make_unique<Spool>(to_ + (number % 2 ? ".1" : ".0"));
             Level level(*output_, size, channels_, *next);
-            const std::string reason = current ? copy(*current, size, level) : readSource(source, level);
+            const std::string reason = current         ? copy(*current, size, level)
+                                       : asked_.pixels ? readPixels(level)
+                                                       : readSource(input_->spec(), level);
             if (!reason.empty()) return reason;
             if (size.last()) break;
             current = std::move(next);
             size = size.next();
         }
         return output_->close() ? std::string() : orElse(output_->geterror(), kFull);
+    }
+
+    std::string readPixels(Level& level) {
+        const AbbePixels& picture = *asked_.pixels;
+        const auto width = static_cast<std::size_t>(picture.width), all = static_cast<std::size_t>(picture.channels),
+                   first = static_cast<std::size_t>(asked_.first), used = static_cast<std::size_t>(channels_);
+        std::vector<float> row(width * used);
+        for (std::size_t y = 0; y < static_cast<std::size_t>(picture.height); ++y) {
+            for (std::size_t x = 0; x < width; ++x)
+                for (std::size_t c = 0; c < used; ++c)
+                    row[x * used + c] = pixelValue(picture, (y * width + x) * all + first + c);
+            if (!asked_.texels(asked_.user, row.data(), picture.width)) return "it was stopped";
+            if (std::string reason = level.add(row.data()); !reason.empty()) return reason;
+        }
+        return {};
+    }
+
+    // As OpenImageIO makes floats of what files hold.
+    static float pixelValue(const AbbePixels& picture, std::size_t at) {
+        if (picture.type == abbeTexelFloat) return static_cast<const float*>(picture.values)[at];
+        return static_cast<float>(static_cast<const std::uint8_t*>(picture.values)[at]) * (1.0f / 255);
     }
 
     std::string readSource(const OIIO::ImageSpec& source, Level& level) {

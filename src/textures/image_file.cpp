@@ -1,9 +1,11 @@
 #include "textures/image_file.h"
 
 #include "base/memory_limit.h"
+#include "base/named_arrays.h"
 #include "base/program_folder.h"
 #include "io/exr_reader.h"
 
+#include <algorithm>
 #include <dlfcn.h>
 #include <exception>
 #include <filesystem>
@@ -49,6 +51,36 @@ void checkPicture(const std::string& path) {
     if (std::string reason = exrBoundsFault(path); !reason.empty()) throw ImageFileError(reason);
 }
 
+AbbeImageInfo infoOf(const AbbePixels& p) {
+    AbbeImageInfo info{};
+    info.width = p.width;
+    info.height = p.height;
+    info.channels = p.channels >= 3 ? 3 : 1;
+    info.alpha = p.channels % 2 == 0 ? p.channels - 1 : -1;
+    info.type = p.type;
+    return info;
+}
+
+float valueOf(const AbbePixels& p, std::size_t at) {
+    if (p.type == abbeTexelFloat) return static_cast<const float*>(p.values)[at];
+    return static_cast<float>(static_cast<const std::uint8_t*>(p.values)[at]) * (1.0f / 255);
+}
+
+ImagePixels imageOf(const AbbePixels& p, int first, int mostChannels) {
+    ImagePixels image;
+    image.width = p.width;
+    image.height = p.height;
+    image.channels = std::min(p.channels - first, mostChannels) >= 3 ? 3 : 1;
+    const auto all = static_cast<std::size_t>(p.channels), used = static_cast<std::size_t>(image.channels);
+    const std::size_t texels = static_cast<std::size_t>(p.width) * static_cast<std::size_t>(p.height);
+    requireMemory(static_cast<double>(texels * used) * sizeof(float));
+    image.values.resize(texels * used);
+    for (std::size_t i = 0; i < texels; ++i)
+        for (std::size_t c = 0; c < used; ++c)
+            image.values[i * used + c] = valueOf(p, i * all + static_cast<std::size_t>(first) + c);
+    return image;
+}
+
 float* begin(void* user, int width, int height, int channels, const char* colorSpace) {
     auto& reading = *static_cast<Reading*>(user);
     try {
@@ -77,7 +109,25 @@ const AbbeImageModule& imageModule() {
     return *module;
 }
 
+std::optional<MemoryPicture> pixelsInMemory(const std::string& path) {
+    const auto arrays = findArrays(path);
+    if (!arrays) return std::nullopt;
+    const auto [width, height, channels] = arrays->size;
+    const auto bytes = arrays->bytes.find("pixels");
+    const bool integers = bytes != arrays->bytes.end();
+    const std::size_t given = integers ? bytes->second.size() : arrays->of("pixels").size();
+    if (width < 1 || height < 1 || channels < 1 || channels > 4 ||
+        given !=
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels))
+        throw ImageFileError(fmt::format("{} numbers are no picture of {} × {} pixels with {} channels", given, width,
+                                         height, channels));
+    const void* values = arrays->of("pixels").data();
+    if (integers) values = bytes->second.data();
+    return MemoryPicture{{width, height, channels, integers ? abbeTexel8 : abbeTexelFloat, values}, arrays};
+}
+
 ImagePixels readImageFile(const std::string& path, int first, int mostChannels) {
+    if (const auto pixels = pixelsInMemory(path)) return imageOf(pixels->pixels, first, mostChannels);
     checkPicture(path);
     Reading reading;
     const AbbeImageSink sink{&reading, begin, fail};
@@ -89,6 +139,7 @@ ImagePixels readImageFile(const std::string& path, int first, int mostChannels) 
 }
 
 AbbeImageInfo describeImageFile(const std::string& path) {
+    if (const auto pixels = pixelsInMemory(path)) return infoOf(pixels->pixels);
     checkPicture(path);
     AbbeImageInfo info{};
     AbbeImageFault fault{};

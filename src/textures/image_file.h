@@ -3,6 +3,8 @@
 
 #include "textures/image_module.h"
 
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -25,5 +27,12 @@ const AbbeImageModule& imageModule();
 // Also throws std::bad_alloc if the pixels do not fit into memory.
 ImagePixels readImageFile(const std::string& path, int first = 0, int mostChannels = 3);
 AbbeImageInfo describeImageFile(const std::string& path);
+struct MemoryPicture {
+    AbbePixels pixels;
+    std::shared_ptr<const void> owner; // of the numbers
+};
+// The picture of arrays in memory (base/named_arrays.h), if `path` is the name of such: "pixels", size[0] × size[1] of
+// size[2] channels, 1 to 4 of which the second or the fourth is alpha. No module is loaded.
+std::optional<MemoryPicture> pixelsInMemory(const std::string& path);
 
 } // namespace abbe

@@ -42,6 +42,13 @@ struct AbbeImageInfo {
     char colorSpace[64];     // how it is tagged, or empty
 };
 
+// A picture in memory: rows from the top, channels interleaved.
+struct AbbePixels {
+    std::int32_t width, height, channels;
+    std::int32_t type; // abbeTexel8 or abbeTexelFloat
+    const void* values;
+};
+
 // From any picture to a tiled one with mip levels: each level is the exact mean of the one before. Needs memory for a
 // few rows only; what a level leaves for the next one lies in temporary files beside the result.
 struct AbbeConversion {
@@ -51,6 +58,7 @@ struct AbbeConversion {
     void* user;
     // Changes texels of the picture in place, before any averaging. 0 to stop.
     std::int32_t (*texels)(void* user, float* values, std::int64_t count);
+    const AbbePixels* pixels; // the picture, in the place of a file; or null
 };
 
 enum AbbeWrap : std::int32_t { abbeWrapPeriodic, abbeWrapClamp, abbeWrapMirror, abbeWrapBlack };
@@ -86,7 +94,7 @@ struct AbbeImageModule {
     void (*statistics)(void* system, AbbeTextureStatistics*);
 };
 
-inline constexpr std::int32_t kAbbeImageModuleVersion = 4;
+inline constexpr std::int32_t kAbbeImageModuleVersion = 5;
 
 using AbbeGetImageModule = const AbbeImageModule* (*)();
 // The name of that function in the module.

@@ -203,6 +203,16 @@ std::uint64_t keyOf(const fs::path& picture, const ColorEncoding& encoding, std:
     return combine64(h, sampledHash(file, bytes).value_or(0));
 }
 
+// The same of a picture in memory, by all of its content: it has no time at which it was written.
+std::uint64_t keyOf(const AbbePixels& picture, const ColorEncoding& encoding, std::int32_t first) {
+    std::uint64_t h = hashOf(encoding.name, kVersion);
+    for (const std::int32_t n : {first, picture.width, picture.height, picture.channels, picture.type})
+        h = combine64(h, static_cast<std::uint64_t>(n));
+    const auto values = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
+                        static_cast<std::size_t>(picture.channels);
+    return hashOf(picture.values, values * (picture.type == abbeTexel8 ? 1 : sizeof(float)), h);
+}
+
 // Linear colours of 8 or 16 bits as halves, 11 bits of precision at any brightness; numbers as they are.
 AbbeTexelType storedType(const AbbeImageInfo& info, const ColorEncoding& encoding) {
     const auto type = static_cast<AbbeTexelType>(info.type);
@@ -232,8 +242,9 @@ Converted convert(const std::string& picture, const AbbeImageInfo& info, const C
     if (part.error() != 0)
         return {{}, fmt::format("the folder `{}` cannot be written to", file.parent_path().string())};
     TexelCheck check(info, encoding, upsampling);
-    const AbbeConversion asked{info.first,   info.channels, storedType(info, encoding),
-                               memoryLeft(), &check,        checkTexels};
+    const auto pixels = pixelsInMemory(picture);
+    const AbbeConversion asked{info.first, info.channels, storedType(info, encoding),        memoryLeft(),
+                               &check,     checkTexels,   pixels ? &pixels->pixels : nullptr};
     AbbeImageFault fault{};
     const bool good = imageModule().convert(picture.c_str(), part.path().c_str(), &asked, &fault);
     Converted result{check.counts(), {}};
@@ -257,15 +268,19 @@ NotFiniteError::NotFiniteError(std::uint64_t values)
 TextureFile textureFile(const std::string& picture, const AbbeImageInfo& info, const ColorEncoding& encoding,
                         const fs::path& directory, const UpsamplingTable* upsampling) {
     if (info.isTexture && encoding.curve == TransferCurve::linear) return {picture, {}, false, {}};
+    const auto pixels = pixelsInMemory(picture);
+    if (pixels && directory.empty())
+        throw ImageFileError("a texture out of an array needs a folder, and HOME and XDG_CACHE_HOME are not set");
     if (directory.empty()) return {picture, {}, true, "there is no folder for it: HOME and XDG_CACHE_HOME are not set"};
     std::error_code error;
     fs::path real = fs::canonical(picture, error);
     if (error) real = picture;
-    const std::uint64_t key = keyOf(real, encoding, info.first);
+    const std::uint64_t key = pixels ? keyOf(pixels->pixels, encoding, info.first) : keyOf(real, encoding, info.first);
     const fs::path file = directory / fmt::format("{}-{:016x}.tif", real.stem().string().substr(0, 200), key);
     if (const auto counts = readTrailer(file, key)) return {file.string(), *counts, false, {}};
     Converted made = convert(real.string(), info, encoding, file, key, upsampling);
     if (made.problem.empty()) return {file.string(), made.counts, false, {}};
+    if (pixels) throw ImageFileError(made.problem);
     return {picture, made.counts, true, std::move(made.problem)};
 }
 

@@ -19,6 +19,7 @@ _HOMES = {
     "Diagnostic": "_errors",
     "SceneError": "_errors",
     "Node": "_values",
+    "image": "_arrays",
     "node": "_values",
     "Scene": "_scene",
     "load": "_scene",

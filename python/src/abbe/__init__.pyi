@@ -1,3 +1,4 @@
+from abbe._arrays import image as image
 from abbe._errors import Diagnostic as Diagnostic
 from abbe._errors import SceneError as SceneError
 from abbe._image import ErrorEstimate as ErrorEstimate

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abbe import _abbe
 from abbe._schema import language_name
-from abbe._values import Line, quoted
+from abbe._values import ImageArray, Line, MemoryFile, quoted
 
 # What of a type arrays may state: three or two numbers, or one, for each point; whole numbers.
 _VECTORS = {"points": 3, "normals": 3, "uvs": 2, "radii": 1}
@@ -26,6 +26,7 @@ _SHAPES = {
 # Numbers of a voxel, where it is not one.
 _OF_THREE = ("color", "velocity")
 _MOST_VOXELS = 1 << 26  # along an axis: kFarthestVoxel
+_MOST_PIXELS = 1 << 20
 _PLACE = ("bounds", "voxel_size", "origin")
 
 
@@ -119,6 +120,38 @@ def _picture(value: Any) -> tuple[NDArray[np.float32], tuple[int, int, int]]:
     if made.ndim != 3 or made.shape[2] != 3:
         raise ValueError(f"image: an array of shape (height, width, 3) is expected, not {made.shape}")
     return made, (made.shape[1], made.shape[0], 3)
+
+
+def image(array: Any, space: str | None = None, *, wrap: str | None = None, take: str | None = None) -> ImageArray:
+    """The picture of an image texture out of an array, without a file: ``reflectance=abbe.image(pixels)`` wherever a texture may stand, or
+    ``scene.texture("bark", "image", abbe.image(pixels, space="data"))``.
+
+    array: (height, width) or (height, width, 1 to 4), rows from the top; two and four channels end with alpha, which is not multiplied into
+    the others. uint8 is as in a PNG, 255 for 1; other numbers are taken as float32, as in an EXR. No copy of arrays that are contiguous and
+    of these types; do not change them while the scene lives.
+    space: how values are stored, as in ``image "bark.exr" space=…``: a colour space, ``"data"`` for heights, directions and the like. Without
+    it ``"srgb_rec709_scene"`` for uint8, ``"lin_rec709_scene"`` for floats; one channel is data.
+    wrap: "periodic", "clamp", "mirror", "black". take: "color", "alpha"; the alpha channel alone.
+
+    Raises TypeError, ValueError for other shapes and types, and numbers that are not finite.
+    """
+    values = np.asarray(array)
+    made: NDArray[Any] = np.ascontiguousarray(values) if values.dtype == np.uint8 else _floats("image", values)
+    if made.ndim == 2:
+        made = made[:, :, np.newaxis]
+    if made.ndim != 3 or 0 in made.shape or made.shape[2] > 4:
+        raise ValueError(f"image: an array of shape (height, width) or (height, width, 1 to 4) is expected, not {values.shape}")
+    if max(made.shape[:2]) > _MOST_PIXELS:
+        raise ValueError(f"image: {max(made.shape[:2])} pixels along an axis; the most is {_MOST_PIXELS}")
+    if take == "alpha" and made.shape[2] % 2:
+        raise ValueError(f"image: {made.shape[2]} channels have no alpha")
+    if space is not None and not isinstance(space, str):
+        raise TypeError(f"space: a name is expected, not {space!r}")
+    size = (made.shape[1], made.shape[0], made.shape[2])
+    floats, numbers = ({}, {"pixels": made}) if made.dtype == np.uint8 else ({"pixels": made}, {})
+    handle = _abbe.ArraysHandle("image", floats, {}, size, numbers)
+    properties = {name: value for name, value in (("wrap", wrap), ("take", take)) if value is not None}
+    return ImageArray(MemoryFile(handle, f"a picture that is an array of {made.shape}"), space, properties)
 
 
 def take_arrays(

@@ -86,7 +86,7 @@ class Definitions:
         lines = encoder.property_lines(kind, type_name, rest)
         if arrays is not None:
             lines.append(arrays)
-            scene._has_arrays = True
+        scene._has_arrays = scene._has_arrays or arrays is not None or encoder.has_arrays
         line = Line(kind, tokens, lines if lines or kind in ("film", "render", *_CONTAINERS) else None)
         self._lines.append(line)
         scene._changed()
@@ -173,6 +173,7 @@ class Scene(Definitions):
             if not known and word != "transform":
                 raise one_fault("E0201", f"no {type or kind} has a property `{word}`")
             lines += encoder.lines(known[0] if known else {"type": "transform", "name": "transform"}, word, value)
+        self._has_arrays = self._has_arrays or encoder.has_arrays
         self._lines.append(Line("override", [kind, *([name_word(name)] if name else [])], lines))
         self._changed()
 

@@ -47,7 +47,27 @@ class Path:
         self.path = os.path.abspath(path)
 
 
-Token = str | Path
+class MemoryFile:
+    """A file in memory: arrays that have a name while somebody keeps `handle`. In a text that others read they have no place."""
+
+    def __init__(self, handle: Any, what: str) -> None:
+        self.handle = handle
+        self.what = what
+
+
+class ImageArray:
+    """What `abbe.image()` returns: the picture of a texture, or a texture where one may stand."""
+
+    def __init__(self, file: MemoryFile, space: str | None, properties: Mapping[str, Any]) -> None:
+        self.file = file
+        self.space = space
+        self.properties = dict(properties)
+
+    def tokens(self) -> list[Token]:
+        return [self.file, *([f"space={name_word(self.space)}"] if self.space is not None else [])]
+
+
+Token = str | Path | MemoryFile
 
 
 class Line:
@@ -58,7 +78,7 @@ class Line:
         self.block = block
 
     def write(self, out: list[str], folder: str, indent: int, memory: bool) -> None:
-        words = [word if isinstance(word, str) else quoted(_relative(word.path, folder)) for word in self.tokens]
+        words = [_word(token, folder, memory) for token in self.tokens]
         head = "    " * indent + " ".join(words)
         if self.block is None:
             out.append(head)
@@ -67,6 +87,16 @@ class Line:
         for line in self.block:
             line.write(out, folder, indent + 1, memory)
         out.append("    " * indent + "}")
+
+
+def _word(token: Token, folder: str, memory: bool) -> str:
+    if isinstance(token, str):
+        return token
+    if isinstance(token, Path):
+        return quoted(_relative(token.path, folder))
+    if memory:
+        return quoted(str(token.handle.name))
+    raise ValueError(f"{token.what} has no place in a text: save it as a PNG or an EXR, and name that")
 
 
 def _relative(path: str, folder: str) -> str:
@@ -136,6 +166,7 @@ class Encoder:
 
     def __init__(self, names: Iterable[str] = ()) -> None:
         self._names = frozenset(names)
+        self.has_arrays = False  # whether values were arrays that became files in memory
 
     def property_lines(self, kind: str, type_name: str | None, properties: Mapping[str, Any]) -> list[Line]:
         lines = []
@@ -162,12 +193,22 @@ class Encoder:
             return [Line(name, block=self._block(field, value))]
         if isinstance(value, Node):
             return [self._node(field, name, value)]
+        if isinstance(value, ImageArray) and kind != "file":
+            if not field or not (field.get("texturable") or field.get("kind") == "texture"):
+                raise TypeError(f"{name}: no texture may stand here")
+            block = self.property_lines("texture", "image", value.properties)
+            return [Line(name, ["image", *self.tokens({"type": "file"}, value)], block or None)]
         return [Line(name, self.tokens(field, value))]
 
     def tokens(self, field: Field | None, value: Any) -> list[Token]:
         kind = field["type"] if field else ""
         if _is_number(value):
             return [number_word(value.item() if hasattr(value, "item") else value)]
+        if isinstance(value, ImageArray):
+            if kind != "file":
+                raise TypeError("a picture of abbe.image() stands in the place of a texture or of its file")
+            self.has_arrays = True
+            return value.tokens()
         if isinstance(value, os.PathLike):
             value = os.fspath(value)
         if isinstance(value, str):
