@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import gc
+import os
 import struct
 import unittest
+import unittest.mock
 import zlib
 from pathlib import Path
 
@@ -55,6 +57,19 @@ def picture(scene: abbe.Scene) -> np.ndarray:
 
 
 class Pictures(InFolder):
+    def setUp(self) -> None:
+        """A cache without textures, so that all of them are made anew; what else is kept there takes a while to make."""
+        super().setUp()
+        known = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "abbe"
+        cache = self.folder / "cache" / "abbe"
+        cache.mkdir(parents=True)
+        for entry in known.glob("*"):
+            if entry.name != "textures":
+                (cache / entry.name).symlink_to(entry)
+        change = unittest.mock.patch.dict(os.environ, {"XDG_CACHE_HOME": str(self.folder / "cache")})
+        change.start()
+        self.addCleanup(change.stop)
+
     def equal(self, array: np.ndarray, path: Path, space: str | None = None) -> np.ndarray:
         """The bits of the array and of the file."""
         keys = {"space": space} if space else {}
@@ -69,6 +84,7 @@ class Pictures(InFolder):
             write_png(path, bytes_of(channels))
             seen.append(self.equal(bytes_of(channels), path))
         seen.append(self.equal(bytes_of(3), self.folder / "3.png", "lin_rec709_scene"))
+        self.assertTrue(list((self.folder / "cache" / "abbe" / "textures").glob("image-*.tif")))
         self.assertTrue(all((seen[i] != seen[j]).any() for i in range(5) for j in range(i)))
 
     def test_the_bits_of_floats(self) -> None:
@@ -113,7 +129,7 @@ class Pictures(InFolder):
         scene.shape("quad", material=abbe.node("diffuse", reflectance=abbe.image(bytes_of(3))))
         with self.assertRaisesRegex(ValueError, r"array of \(37, 70, 3\) has no place"):
             scene.write(self.folder / "a.scene")
-        self.assertFalse(list(self.folder.iterdir()))
+        self.assertFalse(list(self.folder.glob("*.scene*")))
         self.assertRaises(ValueError, scene.render, part=(1, 2), output="x.exr")
 
 
