@@ -48,7 +48,7 @@ struct RenderOptions {
     std::vector<int> frames;         // of an animation: each is rendered by itself, one after the other
     std::optional<FrameOfRun> frame; // the one that is rendered, that of `input`; to a file of its own
 
-    bool inMemory = false; // no files of the image, which a host gets; parts are files all the same
+    bool inMemory = false;   // no files of the image, which a host gets; parts are files all the same
     std::string sheet, clip; // of all frames: a PNG with their pictures, and a film; empty: none
 
     bool makesFiles() const { return !pixel; }
