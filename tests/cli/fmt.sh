@@ -67,9 +67,12 @@ expect 1 fmt --format=short bad.scene
 says err "bad.scene:2:8: error[E0105]"
 expect 3 fmt absent.scene c.scene
 says err "E0410"
-printf '#usda 1.0\n' >foreign.scene
+printf 'ply\nformat ascii 1.0\nend_header\n' >foreign.scene
 expect 3 fmt foreign.scene
 says err "E0413"
+printf '#usda 1.0\n' >stage.scene
+expect 2 fmt stage.scene
+says err "abbe import stage.scene"
 printf '<scene/>' >foreign.xml
 expect 2 fmt foreign.xml
 says err "abbe import foreign.xml"
