@@ -8,6 +8,7 @@
 #   expect: time           rendered with --time it ends when it should, and something is there to look at soon
 # Pictures are tiny, so that all of it takes seconds.
 set -uo pipefail
+export ABBE_USD=/nowhere/abbe-usd # as on a machine of somebody who has just cloned
 root=$(cd "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath -- "${1:-$root/abbe}")
 command -v node >/dev/null || { echo "node is missing: packaging/apt-test.txt lists what the tests need"; exit 1; }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -77,6 +78,10 @@ def read_exr(path: Path) -> npt.NDArray[np.float64]:
     return np.stack([out[:, names.index(c), :] for c in "RGB"], axis=2).astype(np.float64)
 
 
+# Of scenes as a whole: a stage with a ball around its camera, or a pane of glass, is odd and yet what a test is about.
+OF_THE_WHOLE = {"W0605", "W0609", "W0613", "W0696"}
+
+
 class StageTest(unittest.TestCase):
     """A test with a folder of its own."""
 
@@ -95,8 +100,11 @@ class StageTest(unittest.TestCase):
         scene = usd.load(path, **options)
         self.scene = self.folder / "stage.scene"
         scene.write(self.scene, force=True)
-        done = subprocess.run([program(), "check", *(["--strict"] if strict else []), str(self.scene)], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr + scene.scene_text)
+        done = subprocess.run([program(), "check", str(self.scene)], capture_output=True, text=True)
+        said = done.stdout + done.stderr
+        self.assertEqual(done.returncode, 0, said + scene.scene_text)
+        warnings = set(re.findall(r"warning\[(W\d+)\]", said))
+        self.assertFalse(strict and warnings - OF_THE_WHOLE, said + scene.scene_text)
         return scene
 
     def errors(self, body: str | Path, header: str = HEADER, **options: Any) -> list[usd.Remark]:
