@@ -21,12 +21,12 @@ constexpr const char* kEncoder = "libx264";
 struct ClipKind {
     std::string_view ending, format;
 };
-constexpr std::array<ClipKind, 3> kKinds{{{".mp4", "mp4"}, {".mov", "mov"}, {".mkv", "matroska"}}};
+constexpr std::array<ClipKind, 3> kClipKinds{{{".mp4", "mp4"}, {".mov", "mov"}, {".mkv", "matroska"}}};
 
 const ClipKind* kindOf(const std::string& path) {
     const std::string ending = std::filesystem::path(path).extension().string();
-    const auto found = std::ranges::find(kKinds, ending, &ClipKind::ending);
-    return found == kKinds.end() ? nullptr : &*found;
+    const auto found = std::ranges::find(kClipKinds, ending, &ClipKind::ending);
+    return found == kClipKinds.end() ? nullptr : &*found;
 }
 
 std::string lastLineOf(const std::string& text) {
