@@ -64,23 +64,26 @@ void encloseFolder(const fs::path& folder) {
     enclosures().folders.insert(plainPath(folder));
 }
 
-bool mayName(const fs::path& from, const fs::path& named) {
+NameFault nameFault(const fs::path& from, const fs::path& named) {
     bool enclosed = false;
     {
         const std::lock_guard lock(enclosures().mutex);
         const fs::path asker = plainPath(from);
         for (const fs::path& folder : enclosures().folders) {
             if (asker != folder && !isBelow(asker, folder)) continue;
-            if (!isBelow(named, folder)) return false;
+            if (!isBelow(named, folder)) return NameFault::outsideEnclosure;
             enclosed = true;
         }
     }
     const char* const roots = rootFolders();
-    if (enclosed || !roots) return true;
+    if (enclosed || !roots) return NameFault::none;
     std::error_code error;
     const fs::path own = fs::is_directory(from, error) ? from : from.parent_path();
     const fs::path place = realPlace(named);
-    return isBelow(place, realPlace(own.empty() ? "." : own)) || isBelowRoots(place, roots);
+    const bool below = isBelow(place, realPlace(own.empty() ? "." : own)) || isBelowRoots(place, roots);
+    return below ? NameFault::none : NameFault::outsideRoots;
 }
+
+bool mayName(const fs::path& from, const fs::path& named) { return nameFault(from, named) == NameFault::none; }
 
 } // namespace abbe

@@ -1,6 +1,7 @@
 // Folders that nothing in them may point out of: what is in them came from somebody else, as the files of a pack do.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 namespace abbe {
@@ -12,6 +13,8 @@ void encloseFolder(const std::filesystem::path& folder);
 // In an enclosed folder: what is in it, by names alone, since it has no links. Elsewhere anything or, where $ABBE_ROOT
 // lists folders with `:` between them, what is below one of them or below the folder of `from`, by the places where
 // links lead.
+enum class NameFault : std::uint8_t { none, outsideEnclosure, outsideRoots };
+NameFault nameFault(const std::filesystem::path& from, const std::filesystem::path& named);
 bool mayName(const std::filesystem::path& from, const std::filesystem::path& named);
 
 // The value of $ABBE_ROOT; null if it is not set, or empty.

@@ -56,13 +56,14 @@ std::optional<fs::path> lookUpFile(const Value& value, const fs::path& directory
     if (nameable && findArrays(value.text)) return fs::path(value.text);
     const fs::path written(nameable ? value.text : std::string_view());
     const fs::path path = written.is_absolute() ? written : directory / written;
-    if (nameable && !mayName(directory, path) && rootFolders()) {
+    const NameFault fault = nameable ? nameFault(directory, path) : NameFault::none;
+    if (fault == NameFault::outsideRoots) {
         reportAt(diagnostics, value, "E0417", fmt::format("`{}` is where scenes may read nothing", value.text),
                  "neither below the folder of the scene nor below one of $ABBE_ROOT")
             .help = fmt::format("ABBE_ROOT is `{}`; add its folder, or name a file of the scene's own", rootFolders());
         return std::nullopt;
     }
-    if (nameable && !mayName(directory, path)) {
+    if (fault == NameFault::outsideEnclosure) {
         reportAt(diagnostics, value, "E0415", fmt::format("`{}` is outside of the pack", value.text), "not in the pack")
             .help = "unpack it with `abbe pack PACK -o FOLDER/` to render it with files of your own";
         return std::nullopt;

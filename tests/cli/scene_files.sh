@@ -61,6 +61,8 @@ for name in /etc/hostname ../outside.png "$PWD/library/paint.png" ../../library/
     expect 0 pack shot/one.scene -o one.abz
     expect 1 check one.abz -D "file=$name"
     tells err E0415 "$name"
+    ABBE_ROOT=$PWD/library expect 1 check one.abz -D "file=$name"
+    tells err E0415 "$name"
     sed 's/shape plane.*/shape mesh $file/; s/paint.png/link-mesh.ply/' shot/one.scene >shot/two.scene
     expect 0 pack shot/two.scene -o two.abz
     expect 1 check two.abz -D "file=$name"
