@@ -160,31 +160,30 @@ const char* id(SpectrumRole role) { return kRoles[static_cast<std::size_t>(role)
 const char* id(Dimension d) { return kDimensionIds[static_cast<std::size_t>(d)]; }
 
 std::string jsonField(const FieldInfo& field) {
-    std::string out = fmt::format(R"({{"name":{},"type":"{}","doc":{})", jsonString(field.name), id(field.type),
-                                  jsonString(field.doc));
-    out +=
-        fmt::format(R"(,"dimensions":{})", jsonArray(field.dimensions, [](Dimension d) { return jsonString(id(d)); }));
-    if (!field.example.empty()) out += fmt::format(R"(,"example":{})", jsonString(field.example));
-    if (!field.defaultText.empty()) out += fmt::format(R"(,"default":{})", jsonString(field.defaultText));
+    std::string out =
+        fmt::format(R"({{"name":{},"type":"{}","doc":{})", jsonText(field.name), id(field.type), jsonText(field.doc));
+    out += fmt::format(R"(,"dimensions":{})", jsonArray(field.dimensions, [](Dimension d) { return jsonText(id(d)); }));
+    if (!field.example.empty()) out += fmt::format(R"(,"example":{})", jsonText(field.example));
+    if (!field.defaultText.empty()) out += fmt::format(R"(,"default":{})", jsonText(field.defaultText));
     if (std::isfinite(field.lower)) out += fmt::format(R"(,"minimum":{})", field.lower);
     if (std::isfinite(field.upper)) out += fmt::format(R"(,"maximum":{})", field.upper);
     if (field.type == FieldType::spectrum || field.type == FieldType::stop)
         out += fmt::format(R"(,"role":"{}")", id(field.role));
     if (field.type == FieldType::reference || field.type == FieldType::weighted)
         out += fmt::format(R"(,"kind":"{}")", keyword(field.referenceKind));
-    if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", jsonArray(field.choices, jsonView));
-    if (!field.synonyms.empty()) out += fmt::format(R"(,"synonyms":{})", jsonArray(field.synonyms, jsonView));
+    if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", jsonArray(field.choices, jsonText));
+    if (!field.synonyms.empty()) out += fmt::format(R"(,"synonyms":{})", jsonArray(field.synonyms, jsonText));
     if (!field.keys.empty())
         out += fmt::format(R"(,"keys":{})", jsonArray(field.keys, [](const FieldKey& key) {
-                               return fmt::format(R"({{"name":{},"doc":{},"choices":{}}})", jsonString(key.name),
-                                                  jsonString(key.doc), jsonArray(key.choices, jsonView));
+                               return fmt::format(R"({{"name":{},"doc":{},"choices":{}}})", jsonText(key.name),
+                                                  jsonText(key.doc), jsonArray(key.choices, jsonText));
                            }));
-    if (!field.note.empty()) out += fmt::format(R"(,"note":{})", jsonString(field.note));
+    if (!field.note.empty()) out += fmt::format(R"(,"note":{})", jsonText(field.note));
     if (field.repeats || field.type == FieldType::moments) out += R"(,"repeats":true)";
     if (field.tiles) out += R"(,"tiles":true)";
     if (field.canMove) out += R"(,"keyed":true)";
     if (!field.block.empty()) out += fmt::format(R"(,"block":{})", jsonArray(field.block, jsonField));
-    if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonString(field.group));
+    if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonText(field.group));
     if (field.required) out += R"(,"required":true)";
     if (field.argument >= 0) out += fmt::format(R"(,"argument":{})", field.argument);
     if (field.texturable) out += R"(,"texturable":true)";
@@ -193,7 +192,7 @@ std::string jsonField(const FieldInfo& field) {
 
 std::string jsonType(const TypeInfo& type) {
     return fmt::format(R"({{"kind":"{}","name":{},"doc":{},"example":{},"default":{},"fields":{}}})",
-                       keyword(type.kind), jsonString(type.name), jsonString(type.doc), jsonString(type.example),
+                       keyword(type.kind), jsonText(type.name), jsonText(type.doc), jsonText(type.example),
                        type.isDefault ? "true" : "false", jsonArray(type.fields, jsonField));
 }
 
@@ -202,7 +201,7 @@ std::string jsonUnits() {
     for (std::size_t i = 1; i < kDimensionIds.size(); ++i)
         for (const std::string_view name : spellings(static_cast<Dimension>(i)))
             out += fmt::format(R"({}{{"name":{},"dimension":"{}","scale":{}}})", out.size() > 1 ? "," : "",
-                               jsonString(name), kDimensionIds[i], findUnit(name)->scale);
+                               jsonText(name), kDimensionIds[i], findUnit(name)->scale);
     return out + "]";
 }
 
@@ -210,9 +209,9 @@ std::string jsonDimensions() {
     std::string out = "[";
     for (std::size_t i = 0; i < kDimensionIds.size(); ++i) {
         const auto d = static_cast<Dimension>(i);
-        out += fmt::format(R"({}{{"name":"{}","doc":{},"si":{},"without_unit":{}}})", out.size() > 1 ? "," : "",
-                           kDimensionIds[i], jsonString(describe(d)), jsonString(siUnit(d)),
-                           jsonString(meaningWithoutUnit(d)));
+        out +=
+            fmt::format(R"({}{{"name":"{}","doc":{},"si":{},"without_unit":{}}})", out.size() > 1 ? "," : "",
+                        kDimensionIds[i], jsonText(describe(d)), jsonText(siUnit(d)), jsonText(meaningWithoutUnit(d)));
     }
     return out + "]";
 }
@@ -222,39 +221,39 @@ std::string jsonKinds() {
     for (int i = 0; i <= static_cast<int>(Kind::render); ++i) {
         const KindText& kind = kindText(static_cast<Kind>(i));
         out += fmt::format(R"({}{{"name":"{}","doc":{},"head":{},"example":{}}})", out.size() > 1 ? "," : "",
-                           keyword(kind.kind), jsonString(kind.doc), jsonString(kind.head), jsonString(kind.example));
+                           keyword(kind.kind), jsonText(kind.doc), jsonText(kind.head), jsonText(kind.example));
     }
     return out + "]";
 }
 
 std::string jsonWord(const LanguageWord& word) {
     const auto part = [](const WordPart& p) {
-        return fmt::format(R"({{"name":{},"doc":{},"takes":{},"default":{},"example":{}}})", jsonString(p.name),
-                           jsonString(p.doc), jsonString(p.takes), jsonString(p.defaultText), jsonString(p.example));
+        return fmt::format(R"({{"name":{},"doc":{},"takes":{},"default":{},"example":{}}})", jsonText(p.name),
+                           jsonText(p.doc), jsonText(p.takes), jsonText(p.defaultText), jsonText(p.example));
     };
-    return fmt::format(R"({{"name":{},"doc":{},"example":{},"parts":{}}})", jsonString(word.name), jsonString(word.doc),
-                       jsonString(word.example), jsonArray(word.parts, part));
+    return fmt::format(R"({{"name":{},"doc":{},"example":{},"parts":{}}})", jsonText(word.name), jsonText(word.doc),
+                       jsonText(word.example), jsonArray(word.parts, part));
 }
 
 // What has a name because it comes with the program.
 std::string jsonNames() {
     return fmt::format(R"({{"illuminant":{},"measured":{},"glass":{},"metal":{},"rgb_space":{}}})",
-                       jsonArray(illuminantNames(), jsonView), jsonArray(measuredNames(), jsonView),
-                       jsonArray(glassNames(), jsonView), jsonArray(metalNames(), jsonView),
-                       jsonArray(rgbSpaceWords(), jsonView));
+                       jsonArray(illuminantNames(), jsonText), jsonArray(measuredNames(), jsonText),
+                       jsonArray(glassNames(), jsonText), jsonArray(metalNames(), jsonText),
+                       jsonArray(rgbSpaceWords(), jsonText));
 }
 
 std::string jsonPresets(const TypeTable& table) {
     const auto preset = [](const Preset& p) {
         return fmt::format(R"({{"kind":"{}","name":{},"group":{},"doc":{},"source":{}}})", keyword(p.kind),
-                           jsonString(p.name), jsonString(p.group), jsonString(p.doc), jsonString(p.source));
+                           jsonText(p.name), jsonText(p.group), jsonText(p.doc), jsonText(p.source));
     };
     return table.presets() ? jsonArray(table.presets()->all(), preset) : "[]";
 }
 
 std::string jsonCode(const CodeInfo& code) {
-    return fmt::format(R"({{"code":{},"title":{},"explanation":{}}})", jsonString(code.code), jsonString(code.title),
-                       jsonString(code.explanation));
+    return fmt::format(R"({{"code":{},"title":{},"explanation":{}}})", jsonText(code.code), jsonText(code.title),
+                       jsonText(code.explanation));
 }
 
 } // namespace
@@ -284,8 +283,8 @@ std::string diagnosticsMarkdown() {
 
 std::string schemaJson(const TypeTable& table) {
     const auto form = [](const SpectrumForm& f) {
-        return fmt::format(R"({{"name":{},"example":{},"doc":{}}})", jsonString(f.name), jsonString(f.example),
-                           jsonString(f.doc));
+        return fmt::format(R"({{"name":{},"example":{},"doc":{}}})", jsonText(f.name), jsonText(f.example),
+                           jsonText(f.doc));
     };
     return fmt::format("{{\"edition\":1,\"kinds\":{},\"words\":{},\"types\":{},\"spectra\":{},\"units\":{},"
                        "\"dimensions\":{},\"names\":{},\"presets\":{},\"codes\":{}}}\n",

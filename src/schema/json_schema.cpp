@@ -22,7 +22,7 @@ constexpr std::string_view kText = R"({"type":"string"})";
 constexpr std::string_view kAnything = "true";
 
 std::string enumOf(const std::vector<std::string_view>& words) {
-    return fmt::format(R"({{"enum":{}}})", jsonArray(words, jsonView));
+    return fmt::format(R"({{"enum":{}}})", jsonArray(words, jsonText));
 }
 
 // Exactly these values in this order.
@@ -179,7 +179,7 @@ std::string keysOf(const FieldInfo& field) {
 
 std::string fieldSchema(const FieldInfo& field) {
     return fmt::format(R"({{"description":{},"properties":{{"values":{},"keys":{},"children":{}}}{}}})",
-                       jsonString(field.doc), valuesOf(field), keysOf(field), childrenOf(field),
+                       jsonText(field.doc), valuesOf(field), keysOf(field), childrenOf(field),
                        needsValues(field) ? R"(,"required":["values"])" : "");
 }
 
@@ -187,9 +187,9 @@ std::string fieldSchema(const FieldInfo& field) {
 std::string fieldsSchema(const std::vector<FieldInfo>& fields) {
     std::string names, rules;
     for (const FieldInfo& field : fields) {
-        names += fmt::format("{}{}", names.empty() ? "" : ",", jsonString(field.name));
+        names += fmt::format("{}{}", names.empty() ? "" : ",", jsonText(field.name));
         rules += fmt::format(R"({}{{"if":{{"properties":{{"name":{{"const":{}}}}}}},"then":{}}})",
-                             rules.empty() ? "" : ",", jsonString(field.name), fieldSchema(field));
+                             rules.empty() ? "" : ",", jsonText(field.name), fieldSchema(field));
     }
     const std::string known =
         fmt::format(R"({{"properties":{{"name":{{"anyOf":[{{"enum":[{}]}},{{"pattern":"^x-"}}]}}}}}})", names);
@@ -205,7 +205,7 @@ std::string kindSchema(const TypeTable& table, Kind kind) {
     for (const TypeInfo& type : table.all()) {
         if (type.kind != kind || type.name == "preset") continue;
         const std::string properties = fmt::format(R"("children":{{"items":{{"$ref":"#/$defs/{}"}}}})", typeId(type));
-        const std::string word = fmt::format(R"({{"const":{}}})", jsonString(type.name));
+        const std::string word = fmt::format(R"({{"const":{}}})", jsonText(type.name));
         for (const std::string& values : {fmt::format(R"("prefixItems":[{}],"minItems":1)", word),
                                           fmt::format(R"("prefixItems":[{},{}],"minItems":2)", kText, word)})
             ways.push_back(
@@ -227,10 +227,10 @@ bool hasTypes(const TypeTable& table, Kind kind) { return !typeNames(table, kind
 std::string statementSchema(const TypeTable& table) {
     std::string names, rules;
     const auto add = [&](std::string_view name, const std::string& then) {
-        names += fmt::format("{}{}", names.empty() ? "" : ",", jsonString(name));
+        names += fmt::format("{}{}", names.empty() ? "" : ",", jsonText(name));
         if (then.empty()) return;
         rules += fmt::format(R"({}{{"if":{{"properties":{{"name":{{"const":{}}}}}}},"then":{}}})",
-                             rules.empty() ? "" : ",", jsonString(name), then);
+                             rules.empty() ? "" : ",", jsonText(name), then);
     };
     for (int i = 0; i <= static_cast<int>(Kind::render); ++i) {
         const auto kind = static_cast<Kind>(i);
@@ -267,10 +267,10 @@ std::string jsonSchema(const TypeTable& table) {
     defs +=
         R"("transform-step":{"$ref":"#/$defs/node","properties":{"name":{"enum":["translate","rotate","scale","matrix","look-at","at"]}}},)";
     for (const TypeInfo& type : table.all())
-        defs += fmt::format("{}:{},\n", jsonString(typeId(type)), fieldsSchema(type.fields));
+        defs += fmt::format("{}:{},\n", jsonText(typeId(type)), fieldsSchema(type.fields));
     for (int i = 0; i <= static_cast<int>(Kind::render); ++i)
         if (const auto kind = static_cast<Kind>(i); hasTypes(table, kind))
-            defs += fmt::format("{}:{},\n", jsonString(keyword(kind)), kindSchema(table, kind));
+            defs += fmt::format("{}:{},\n", jsonText(keyword(kind)), kindSchema(table, kind));
     defs += R"("statement":)" + statementSchema(table);
     return fmt::format("{{\"$schema\":\"https://json-schema.org/draft/2020-12/schema\",\n"
                        "\"title\":\"Abbe scene, edition 1\",\n"

@@ -22,13 +22,13 @@ std::string jsonValue(const Value& value) {
     case ValueKind::null:
         return "null";
     default:
-        return jsonString(value.text);
+        return jsonText(value.text);
     }
 }
 
 // Everything is appended to one text: inline meshes are large.
 void addTree(const Node& node, std::string& out) {
-    out += R"({"name":)" + jsonString(node.name());
+    out += R"({"name":)" + jsonText(node.name());
     if (node.allNumbers() && node.numbers().size() > 0) {
         out += R"(,"values":[)";
         const char* between = "";
@@ -46,7 +46,7 @@ void addTree(const Node& node, std::string& out) {
         out += R"(,"keys":{)";
         const char* between = "";
         for (const Key& key : node.keys()) {
-            out += between + jsonString(key.name) + ":" + jsonValue(key.value);
+            out += between + jsonText(key.name) + ":" + jsonValue(key.value);
             between = ",";
         }
         out += '}';
@@ -70,9 +70,9 @@ std::string treeJson(const Document& document) {
     std::string out = "[";
     for (const Document::Parameter& parameter : document.parameters) {
         if (out.size() > 1) out += ",\n";
-        out += R"({"name":"param","values":[)" + jsonString(parameter.name);
+        out += R"({"name":"param","values":[)" + jsonText(parameter.name);
         for (const Value& value : parameter.values()) out += "," + jsonValue(value);
-        if (!parameter.doc.empty()) out += "," + jsonString(parameter.doc);
+        if (!parameter.doc.empty()) out += "," + jsonText(parameter.doc);
         out += "]}";
     }
     for (const Node node : document.roots()) {
