@@ -4,6 +4,7 @@
 #include "parser/parse.h"
 #include "parser/tokens.h"
 #include "parser/value_scanner.h"
+#include "schema/describe.h"
 
 #include <algorithm>
 #include <bit>
@@ -503,6 +504,13 @@ class Layout {
 std::string layOut(std::string_view text) {
     const std::string copy(text); // ends with a NUL
     return parser::Layout(copy).write();
+}
+
+std::string formatted(std::string_view text) {
+    SourceMap sources;
+    Diagnostics none;
+    const auto document = parse(sources, sources.add("text", std::string(text)), {}, none);
+    return layOut(schema::withCanonicalUnits(text, *document));
 }
 
 std::string withEdition(std::string_view text) {

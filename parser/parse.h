@@ -48,6 +48,8 @@ std::shared_ptr<schema::Document> parse(const SourceMap&, FileId, const ParseOpt
 // The text in the layout of docs/language/syntax.md, "Layout": comments, texts and the spelling of numbers stay as they
 // are, and so do spaces inside of lines. What is laid out so stays so. Requires: parse() found no errors in the text.
 std::string layOut(std::string_view text);
+// What `abbe fmt` leaves of a text: one spelling for each unit, in that layout. Requires the same.
+std::string formatted(std::string_view text);
 // The text with `scene 1` behind the comments that it begins with. Requires the same, and that it has no edition.
 std::string withEdition(std::string_view text);
 // Whether two texts without errors are the same tree: names, values, keys and blocks, wherever they stand.

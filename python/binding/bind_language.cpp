@@ -57,7 +57,7 @@ std::string layOutText(const std::string& text) {
     parse(sources, file, {}, diagnostics);
     for (const Diagnostic& d : diagnostics.all())
         if (d.severity == Severity::error) throw nb::value_error((d.code + ": " + d.message).c_str());
-    return layOut(text);
+    return formatted(text);
 }
 
 bool sameScene(const std::string& a, const std::string& b) {

@@ -17,7 +17,7 @@ void addArguments(Arguments& a, LspOptions& o) {
 }
 
 ExitCode run(const LspOptions&, const CommonOptions&) {
-    return lsp::runLanguageServer(STDIN_FILENO, STDOUT_FILENO, layOut) == 0 ? ExitCode::done : ExitCode::faulty;
+    return lsp::runLanguageServer(STDIN_FILENO, STDOUT_FILENO, formatted) == 0 ? ExitCode::done : ExitCode::faulty;
 }
 
 } // namespace abbe

@@ -448,6 +448,9 @@ async function outlines(client) {
     check(laidOut === 'scene 1\ncamera {\n    fov 40 deg\n}\n\nlight sky\nshape sphere\n', 'a text that is laid out', laidOut);
     editor.show(laidOut);
     check((await editor.result('formatting', { options: {} })).length === 0, 'what is laid out stays so');
+    editor.show('scene 1\nlight sky { luminance 100 cd-per-m2 }\n');
+    const respelt = apply(editor.text, await editor.result('formatting', { options: {} }));
+    check(respelt === 'scene 1\nlight sky { luminance 100 nits }\n', 'units as `abbe fmt` spells them', respelt);
     editor.show('scene 1\ncamera {\nfov 40deg\n}\n');
     check((await editor.result('formatting', { options: {} })).length === 0, 'a text with syntax errors stays as it is');
 
