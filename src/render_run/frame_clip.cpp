@@ -81,8 +81,8 @@ FrameClip::FrameClip(const std::string& path, int width, int height, double fps,
     }
 }
 
-void FrameClip::fail() {
-    const ProcessEnd end = ffmpeg_->finish();
+// Nothing more is done with it.
+void FrameClip::fail(const ProcessEnd& end) {
     const std::string said = lastLineOf(end.err);
     ffmpeg_.reset();
     throw IoError(fmt::format("cannot write `{}`: ffmpeg ended with {}{}", path_, end.code,
@@ -92,7 +92,7 @@ void FrameClip::fail() {
 void FrameClip::add(const BytePicture& picture) {
     if (!ffmpeg_) return; // it was told that it failed
     const BytePicture frame = fitted(picture, width_, height_);
-    if (!ffmpeg_->feed({reinterpret_cast<const char*>(frame.rgb.data()), frame.rgb.size()})) fail();
+    if (!ffmpeg_->feed({reinterpret_cast<const char*>(frame.rgb.data()), frame.rgb.size()})) fail(ffmpeg_->finish());
     ++frames_;
 }
 
@@ -105,11 +105,7 @@ void FrameClip::addBlack() {
 void FrameClip::finish() {
     if (!ffmpeg_) return;
     const ProcessEnd end = ffmpeg_->finish();
-    if (end.code != 0) {
-        const std::string said = lastLineOf(end.err);
-        ffmpeg_.reset();
-        throw IoError(fmt::format("cannot write `{}`: ffmpeg ended with {}: {}", path_, end.code, said));
-    }
+    if (end.code != 0) fail(end);
     ffmpeg_.reset();
     file_.commit();
 }

@@ -35,7 +35,7 @@ class FrameClip {
     void finish();
 
   private:
-    [[noreturn]] void fail();
+    [[noreturn]] void fail(const ProcessEnd&);
 
     std::string path_;
     int width_, height_;
