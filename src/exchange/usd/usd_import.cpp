@@ -96,10 +96,12 @@ std::string_view verbOf(std::string_view code) {
     return code == "W0803" ? " is not known" : "";
 }
 
+Severity severityOf(std::string_view code) { return code.starts_with("E") ? Severity::error : Severity::warning; }
+
 void addRemark(const UsdJson& remark, UsdPlaces& places, Diagnostics& diagnostics) {
     const std::string code = remark.value("code", ""), path = remark.value("path", ""), what = remark.value("what", "");
     Diagnostic d;
-    d.severity = code.starts_with("E") ? Severity::error : Severity::warning;
+    d.severity = severityOf(code);
     d.code = code;
     d.message = fmt::format("{}{}: {}", what, verbOf(code), remark.value("why", ""));
     d.span = places.find(remark.value("file", ""), remark.value("layer", ""), path);
@@ -112,16 +114,12 @@ void addReport(const UsdJson& report, UsdPlaces& places, Diagnostics& diagnostic
     for (const UsdJson& one : report.at("repeated")) {
         constexpr int kShown = 5; // remarks of the same words that the report has by themselves
         const std::string code = one.at("code");
-        diagnostics.add(
-            {code.starts_with("E") ? Severity::error : Severity::warning,
-             code,
-             fmt::format("{}{}: {} more of these", one.value("what", ""), verbOf(code), one.value("times", 0) - kShown),
-             {},
-             {},
-             {},
-             {},
-             {},
-             {}});
+        Diagnostic d;
+        d.severity = severityOf(code);
+        d.code = code;
+        d.message =
+            fmt::format("{}{}: {} more of these", one.value("what", ""), verbOf(code), one.value("times", 0) - kShown);
+        diagnostics.add(std::move(d));
     }
 }
 
