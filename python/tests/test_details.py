@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
 import unittest
 
 import numpy as np
-from support import HEADER, LOOKING_DOWN, StageTest, program
+from support import HEADER, LOOKING_DOWN, StageTest
 from test_materials import node, preview, write_png
 
 try:
@@ -45,10 +44,7 @@ class Tiles(StageTest):
 class Scale(StageTest):
     def test_a_volume_is_as_thick_in_centimetres(self) -> None:
         """The same picture in metres and in centimetres; twice the absorption leaves the square of the light [Beer]."""
-        vdb = self.folder / "fog.vdb"
-        made = subprocess.run([program(), "volume", "make", "cumulus", str(vdb), "--resolution", "16"], capture_output=True, text=True)
-        if made.returncode != 0:
-            self.skipTest(f"no volumes here: {made.stderr}")
+        self.volume("cumulus", "fog.vdb", 16)
         body = """def Xform "World" {
             def Camera "cam" { token projection = "orthographic"
                 float horizontalAperture = 10000

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
-from support import HEADER, LOOKING_DOWN, WHITE_FLOOR, StageTest, program
+from support import HEADER, LOOKING_DOWN, WHITE_FLOOR, StageTest
 
 from abbe import usd
 from abbe.usd import command
@@ -361,10 +361,7 @@ class Instances(StageTest):
 
 class Volumes(StageTest):
     def test_fields(self) -> None:
-        vdb = self.folder / "smoke.vdb"
-        done = subprocess.run([program(), "volume", "make", "smoke", str(vdb), "--resolution", "24"], capture_output=True, text=True)
-        if done.returncode != 0:
-            self.skipTest(f"no volumes here: {done.stderr}")
+        self.volume("smoke", "smoke.vdb", 24)
         body = """def Volume "v" {
             rel field:density = </World/v/d>
             rel field:velocity = </World/v/w>
