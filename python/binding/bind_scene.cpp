@@ -23,12 +23,12 @@ nb::list tuples(const DiagnosticLog& log) {
 
 std::shared_ptr<SceneHandle> makeScene(std::string path, std::optional<std::string> text,
                                        std::vector<std::string> defines, std::vector<std::string> variants,
-                                       std::vector<std::string> sets) {
+                                       std::vector<std::string> sets, std::vector<std::string> search) {
     SceneInput input;
     input.path = std::move(path);
     input.text = std::move(text);
     input.defines = std::move(defines);
-    input.layers = {std::move(variants), std::move(sets)};
+    input.layers = {std::move(variants), std::move(sets), std::move(search)};
     return std::make_shared<SceneHandle>(std::move(input));
 }
 
@@ -41,7 +41,7 @@ void bindScene(nb::module_& m) {
         .def("has_errors", &DiagnosticLog::hasErrors);
     nb::class_<SceneHandle>(m, "SceneHandle")
         .def(nb::new_(&makeScene), nb::arg("path"), nb::arg("text").none(), nb::arg("defines"), nb::arg("variants"),
-             nb::arg("sets"))
+             nb::arg("sets"), nb::arg("search"))
         .def("check", &SceneHandle::check, nb::arg("frame").none(), nb::call_guard<nb::gil_scoped_release>())
         .def("forget", &SceneHandle::forget, nb::call_guard<nb::gil_scoped_release>());
 }

@@ -16,6 +16,7 @@ std::vector<std::string> commandWords(const RenderOptions& o) {
     for (const std::string& define : o.input.defines) add("-D", define);
     for (const std::string& variant : o.input.layers.variants) add("--variant", variant);
     for (const std::string& set : o.input.layers.sets) add("--set", set);
+    for (const std::string& folder : o.input.layers.search) add("--search", folder);
     if (o.input.frame) add("--frames", std::to_string(*o.input.frame));
     if (!o.output.empty()) add("-o", o.output);
     if (!b.camera.empty()) add("--camera", b.camera);

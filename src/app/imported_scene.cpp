@@ -1,5 +1,6 @@
 #include "app/imported_scene.h"
 
+#include "base/enclosure.h"
 #include "base/private_folder.h"
 #include "exchange/importer/importer.h"
 #include "io/file.h"
@@ -112,6 +113,8 @@ void addAt(Span named, const Diagnostics& found, Diagnostics& diagnostics) {
 
 } // namespace
 
+PlacedModels::~PlacedModels() = default;
+
 void PlacedModels::place(schema::SceneTree& tree) {
     tree_ = &tree;
     walk(tree.definitions);
@@ -189,7 +192,11 @@ std::vector<schema::Definition> PlacedModels::read(const schema::Definition& sha
             .help = "glTF files and OBJ models with `.mtl` libraries have some; for others write a `material`";
         return {};
     }
-    if (!folder_) folder_ = std::make_unique<const ImportFolder>();
+    if (!folder_) {
+        folder_ = std::make_unique<const ImportFolder>();
+        // Files that a model names were judged when it was read.
+        reach_ = std::make_unique<const FileReach>(folder_->path(), std::vector<std::string>{"/"});
+    }
     tree_->made = folder_->path();
     const fs::path scene = folder_->path() / std::to_string(++count_) / file.filename().replace_extension(".scene");
     const std::string prefix = freePrefix(shape.name.empty() ? file.stem().string() : shape.name);

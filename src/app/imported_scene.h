@@ -15,6 +15,7 @@
 
 namespace abbe {
 
+class FileReach;
 class FolderUse;
 struct MeshParams;
 namespace exchange {
@@ -67,6 +68,7 @@ class PlacedModels {
   public:
     PlacedModels(SourceMap& sources, const schema::TypeTable& types, Diagnostics& diagnostics)
         : sources_(sources), types_(types), diagnostics_(diagnostics) {}
+    ~PlacedModels();
 
     // Changes the definitions of a scene whose names have not been checked. Faults of a model stand at the shape that
     // names it. Throws IoError if its files cannot be written.
@@ -83,6 +85,7 @@ class PlacedModels {
     const schema::TypeTable& types_;
     Diagnostics& diagnostics_;
     std::unique_ptr<const ImportFolder> folder_; // of all of them
+    std::unique_ptr<const FileReach> reach_;     // of what is in it
     schema::SceneTree* tree_ = nullptr;
     std::set<std::string> names_;              // of the scene
     std::vector<schema::Definition> referred_; // materials, textures and objects of the models

@@ -17,6 +17,8 @@ namespace abbe {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::string_view kFrameParameter = "frame";
 
 // Of the files that people wrote: that of the scene and those that it includes.
@@ -73,6 +75,10 @@ std::optional<FileId> readForeignScene(LoadedScene& loaded, const SceneInput& in
     const exchange::ImportChoice choice{input.camera, input.frame};
     loaded.import = std::make_unique<const ImportedScene>(format, path, choice, loaded.sources, loaded.diagnostics);
     loaded.readable = loaded.import->text().has_value();
+    // What was made names files of what it was made of.
+    std::vector<std::string> search = input.layers.search;
+    search.push_back(projectOf(fs::path(path).parent_path()).string());
+    loaded.importReach = std::make_unique<const FileReach>(loaded.import->scenePath().parent_path(), search);
     if (!loaded.readable) return std::nullopt;
     std::istringstream text(*loaded.import->text());
     const std::string name = path + "/" + loaded.import->scenePath().filename().string();
@@ -98,6 +104,7 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     Stopwatch watch;
     const WorkScope work(Work::reading);
     loaded->types = makeTypeTable();
+    loaded->reach = std::make_unique<const FileReach>(fs::path(input.path).parent_path(), input.layers.search);
     const auto file = readText(*loaded, input);
     if (!file) return loaded;
     loaded->readable = true;

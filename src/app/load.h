@@ -4,6 +4,7 @@
 #include "app/imported_scene.h"
 #include "app/program_end.h"
 #include "base/diagnostic.h"
+#include "base/enclosure.h"
 #include "base/file.h"
 #include "base/source.h"
 #include "packs/unpacked.h"
@@ -16,10 +17,11 @@
 
 namespace abbe {
 
-// What `--variant` and `--set` change in a scene, in their order.
+// What `--variant` and `--set` change in a scene, and where `--search` finds files of it, in their order.
 struct LayerChoice {
-    std::vector<std::string> variants; // names
-    std::vector<std::string> sets;     // "kind.name.property=value"
+    std::vector<std::string> variants;    // names
+    std::vector<std::string> sets;        // "kind.name.property=value"
+    std::vector<std::string> search = {}; // folders in which the scene may read (base/enclosure.h)
 
     bool operator==(const LayerChoice&) const = default;
 };
@@ -46,6 +48,8 @@ struct LoadedScene {
     LoadedScene(const LoadedScene&) = delete;
     LoadedScene& operator=(const LoadedScene&) = delete;
 
+    // What the scene may name while it is read and built: that of its own folder, and of one that it was imported to.
+    std::unique_ptr<const FileReach> reach, importReach;
     SourceMap sources;
     schema::TypeTable types;
     schema::SceneTree tree;

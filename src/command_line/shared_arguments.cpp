@@ -18,10 +18,15 @@ void addDefines(Arguments& a, std::vector<std::string>& defines, const char* hel
     a.value("-D", "NAME=VALUE", &defines, help);
 }
 
+void addSearch(Arguments& a, std::vector<std::string>& folders) {
+    a.value("--search", "FOLDER", &folders, "Let the scene read files there, as below $ABBE_PATH; may be repeated");
+}
+
 void addLayers(Arguments& a, LayerChoice& layers) {
     a.value("--variant", "NAME", &layers.variants, "Choose a variant of the scene; may be repeated");
     a.value("--set", "PROPERTY=VALUE", &layers.sets,
             "Set a property: material.skin.roughness=0.3, camera.lens=50; may be repeated");
+    addSearch(a, layers.search);
 }
 
 void addView(Arguments& a, ViewOptions& view) {

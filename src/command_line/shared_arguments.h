@@ -20,7 +20,8 @@ void addThreads(Arguments&);
 void addDefines(Arguments&, std::vector<std::string>& defines,
                 const char* help = "Set a parameter of the scene; may be repeated");
 // `--variant` and `--set`, of commands that take a scene.
-void addLayers(Arguments&, LayerChoice&);
+void addSearch(Arguments&, std::vector<std::string>& folders);
+void addLayers(Arguments&, LayerChoice&); // with the search
 // `--display`, `--view`, `--ocio`, `--exposure`.
 void addView(Arguments&, ViewOptions&);
 // `--png`; a view asks for a PNG, too.

@@ -35,6 +35,7 @@ struct MergeOptions {
     bool soFar = false; // also where samples are missing
     PngOptions png;
     ViewOptions view;
+    std::vector<std::string> search;
 
     static bool makesFiles() { return true; }
 };
@@ -114,6 +115,7 @@ struct ImportOptions {
     bool force = false; // replaces a file that is there
     std::string camera; // of a stage
     std::optional<int> frame;
+    std::vector<std::string> search;
 
     static bool makesFiles() { return true; }
 };

@@ -146,6 +146,8 @@ std::optional<FarmPlan> planOf(const FarmSubmitOptions& options, const CommonOpt
     plan.mergeWords = words.merge;
     // Goals of the scene are those of the shot, not of its parts.
     plan.renderWords.insert(plan.renderWords.end(), {"--noise=0", "--time=0"});
+    // The environment of a machine of the farm may be another one.
+    for (const fs::path& folder : foldersOfEnvironment()) plan.renderWords.push_back("--search=" + folder.string());
     plan.image = fs::absolute(imagePath(options.render.output, film, options.render.input.path)).string();
     plan.animation = !options.render.frames.empty();
     plan.width = film.width;

@@ -1,5 +1,6 @@
 #include "app/json.h"
 #include "app/load.h"
+#include "base/enclosure.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
 #include "exchange/importer/importer.h"
@@ -28,6 +29,7 @@ void addArguments(Arguments& a, ImportOptions& o) {
     a.value("--camera", "NAME", &o.camera,
             "Camera of an OpenUSD stage; without it that of its settings, else the first");
     addMoment(a, o.frame);
+    addSearch(a, o.search);
     addJson(a);
 }
 
@@ -52,8 +54,10 @@ ExitCode explainRefusal(const std::string& path, const CommonOptions& common) {
 }
 
 // Whether the scene that was written is one: else the import is at fault, and says so.
-ExitCode checkWritten(const std::string& path, const Console& console) {
-    const auto loaded = loadScene({path, {}});
+ExitCode checkWritten(const std::string& path, const std::vector<std::string>& search, const Console& console) {
+    SceneInput input{path, {}};
+    input.layers.search = search;
+    const auto loaded = loadScene(input);
     BuildOptions build;
     build.geometry = false;
     if (loaded->readable) buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
@@ -61,8 +65,16 @@ ExitCode checkWritten(const std::string& path, const Console& console) {
     return loaded->exitCode();
 }
 
-std::string importResultText(const std::string& scene, const exchange::ImportFormat& format, const Diagnostics& found,
-                             bool json) {
+// What the scene that was written has to be told, if it names files of the foreign one and those are elsewhere.
+std::vector<std::string> searchOf(const ImportOptions& options, const std::string& scene) {
+    const fs::path foreign = projectOf(fs::path(options.path).parent_path());
+    std::vector<std::string> search = options.search;
+    if (!mayName(fs::path(scene).parent_path(), foreign)) search.push_back(foreign.string());
+    return search;
+}
+
+std::string importResultText(const std::string& scene, const std::vector<std::string>& search,
+                             const exchange::ImportFormat& format, const Diagnostics& found, bool json) {
     if (json)
         return Json::object({{"scene", scene},
                              {"format", std::string(format.name)},
@@ -72,7 +84,9 @@ std::string importResultText(const std::string& scene, const exchange::ImportFor
     const std::string lost = found.warningCount() == 0 ? std::string("everything has a counterpart")
                                                        : fmt::format("{} remark{}", found.warningCount(),
                                                                      found.warningCount() == 1 ? "" : "s");
-    return fmt::format("{0}: {1}; next: abbe render {0}\n", scene, lost);
+    std::string words;
+    for (const std::string& folder : search) words += " --search " + shellQuoted(folder);
+    return fmt::format("{0}: {1}; next: abbe render {0}{2}\n", scene, lost, words);
 }
 
 } // namespace
@@ -86,6 +100,7 @@ ExitCode run(const ImportOptions& options, const CommonOptions& common) {
         common.console.error(fmt::format("`{}` is there already; `--force` replaces it, `-o` names another", scene));
         return ExitCode::usage;
     }
+    const FileReach reach(fs::path(options.path).parent_path(), options.search);
     SourceMap sources;
     Diagnostics diagnostics;
     const auto text = exchange::importScene(*format, options.path, scene, sources, diagnostics,
@@ -95,8 +110,9 @@ ExitCode run(const ImportOptions& options, const CommonOptions& common) {
     fs::create_directories(fs::path(scene).parent_path(), error);
     flushFileSystem(fs::path(scene).parent_path().string()); // side files before what names them
     writeAtomically(scene, *text);
-    if (const ExitCode end = checkWritten(scene, common.console); end != ExitCode::done) return end;
-    common.console.data(importResultText(scene, *format, diagnostics, common.json));
+    const std::vector<std::string> search = searchOf(options, scene);
+    if (const ExitCode end = checkWritten(scene, search, common.console); end != ExitCode::done) return end;
+    common.console.data(importResultText(scene, search, *format, diagnostics, common.json));
     return ExitCode::done;
 }
 

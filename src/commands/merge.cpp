@@ -23,6 +23,7 @@ void addArguments(Arguments& a, MergeOptions& o) {
     a.value("-o,--output", "FILE", &o.output, "Image to write (EXR), or one part for all (.abbe)").require();
     a.flag("--so-far", &o.soFar, "Leave out what is missing: of parts that are not finished, or not there");
     a.value("--scene", "FILE", &o.scene, "Where the scene is now");
+    addSearch(a, o.search);
     addPng(a, o.png, o.view);
     addView(a, o.view);
     addJson(a);
@@ -45,11 +46,16 @@ RenderOptions commandOf(const CheckpointReader& reader) {
 RenderOptions renderOf(const MergeOptions& options) {
     const CheckpointReader first(options.parts.front());
     RenderOptions render = commandOf(first);
-    std::error_code error;
-    if (!options.scene.empty())
-        render.input.path = options.scene;
-    else if (!std::filesystem::exists(render.input.path, error)) // it may be relative to where the part was made
-        render.input.path = (std::filesystem::path(first.header().folder) / render.input.path).string();
+    // What the command named may be relative to where the part was made.
+    const auto now = [&](const std::string& path) {
+        std::error_code error;
+        if (std::filesystem::exists(path, error)) return path;
+        return (std::filesystem::path(first.header().folder) / path).string();
+    };
+    render.input.path = options.scene.empty() ? now(render.input.path) : options.scene;
+    std::vector<std::string>& search = render.input.layers.search;
+    std::ranges::transform(search, search.begin(), now);
+    search.insert(search.end(), options.search.begin(), options.search.end());
     render.output = options.output;
     render.png = options.png;
     render.view = options.view;

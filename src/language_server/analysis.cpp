@@ -1,5 +1,6 @@
 #include "language_server/analysis.h"
 
+#include "base/enclosure.h"
 #include "parser/layer_files.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
@@ -53,6 +54,7 @@ Analysis::Analysis(const Language& language, const std::filesystem::path& path, 
 void Analysis::read(const std::filesystem::path& path, const Reader& reader) {
     LayerOptions options;
     options.read = reader;
+    const FileReach reach(path.parent_path(), {});
     const schema::LayerFiles files = readLayerFiles(sources_, file_, path, options, diagnostics_);
     document_ = files.files.front().document;
     syntaxErrors_ = std::ranges::any_of(diagnostics_.all(), [&](const Diagnostic& d) {

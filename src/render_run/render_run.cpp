@@ -113,8 +113,8 @@ ExitCode RenderRun::checkOutputs() {
                       "name it `….exr`; a PNG is written beside it", ExitCode::usage);
     if (options_.output.empty() && !film_.output.empty() && !mayName(".", asked) &&
         !mayName(options_.input.path, asked))
-        return refuse("E0417", fmt::format("the image `{}` is where scenes may write nothing", summary_.image),
-                      fmt::format("ABBE_ROOT is `{}`; `-o FILE` writes the image anywhere", rootFolders()),
+        return refuse("E0417", fmt::format("the image `{}` is outside of the scene's project", summary_.image),
+                      "a scene writes below its own folder or the current one; `-o FILE` writes the image anywhere",
                       ExitCode::faulty);
     if (built_.layers.deep && !makesPart) summary_.deep = deepPath(summary_.image);
     for (const std::string& path : {summary_.image, summary_.deep}) {

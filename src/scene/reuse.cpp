@@ -124,7 +124,8 @@ class MeaningReader {
     // What was made for a model that the scene takes with its materials is made anew whenever the scene is read.
     void file(const Value& v) {
         if (v.text.find('\0') != v.text.npos) return;
-        const std::filesystem::path path = tree_.directoryOf(v.span) / std::filesystem::path(v.text);
+        const std::filesystem::path path =
+            schema::placeOfFile(std::filesystem::path(v.text), tree_.directoryOf(v.span), true);
         std::error_code error;
         if (const std::size_t tile = path.native().find(kTilePattern); tile != std::string::npos)
             return tiles(path, tile);

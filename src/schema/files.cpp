@@ -43,31 +43,62 @@ bool hasTile(const fs::path& path) {
 } // namespace
 
 std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diagnostics& diagnostics, bool tiles) {
-    auto path = lookUpFile(value, tree.directoryOf(value.span), diagnostics, tiles);
+    const bool user = tree.isOfCommandLine(value.span);
+    auto path = lookUpFile(value, tree.directoryOf(value.span), diagnostics, {tiles, user});
     const auto insert = tree.inserts.find(value.span.file);
     if (path && tree.namedFiles && (insert == tree.inserts.end() || insert->second.written))
         tree.namedFiles->push_back({value.span, std::string(value.text), *path});
     return path;
 }
 
-std::optional<fs::path> lookUpFile(const Value& value, const fs::path& directory, Diagnostics& diagnostics,
-                                   bool tiles) {
-    const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
-    if (nameable && findArrays(value.text)) return fs::path(value.text);
-    const fs::path written(nameable ? value.text : std::string_view());
-    const fs::path path = written.is_absolute() ? written : directory / written;
-    const NameFault fault = nameable ? nameFault(directory, path) : NameFault::none;
-    if (fault == NameFault::outsideRoots) {
-        reportAt(diagnostics, value, "E0417", fmt::format("`{}` is where scenes may read nothing", value.text),
-                 "neither below the folder of the scene nor below one of $ABBE_ROOT")
-            .help = fmt::format("ABBE_ROOT is `{}`; add its folder, or name a file of the scene's own", rootFolders());
-        return std::nullopt;
-    }
+fs::path placeOfFile(const fs::path& written, const fs::path& directory, bool tiles) {
+    if (written.is_absolute()) return written;
+    const auto isThere = [&](const fs::path& path) {
+        std::error_code error;
+        return fs::exists(path, error) || (tiles && hasTile(path));
+    };
+    const fs::path beside = directory / written;
+    if (written.empty() || isThere(beside)) return beside;
+    for (const fs::path& folder : searchFolders(directory))
+        if (isThere(folder / written)) return folder / written;
+    return beside;
+}
+
+namespace {
+
+// Of a file that is where the scene may not look.
+bool isRefused(const Value& value, const fs::path& directory, const fs::path& path, bool user,
+               Diagnostics& diagnostics) {
+    const NameFault fault = nameFault(directory, path);
     if (fault == NameFault::outsideEnclosure) {
         reportAt(diagnostics, value, "E0415", fmt::format("`{}` is outside of the pack", value.text), "not in the pack")
             .help = "unpack it with `abbe pack PACK -o FOLDER/` to render it with files of your own";
-        return std::nullopt;
+        return true;
     }
+    if (fault == NameFault::none || user) return false;
+    auto& d = reportAt(diagnostics, value, "E0417", fmt::format("`{}` is outside of the scene's project", value.text),
+                       "not below the folder of the scene");
+    d.notes.push_back(fmt::format("the project is {}", projectOf(directory).string()));
+    d.help = helpOutsideReach(path);
+    return true;
+}
+
+std::string placesSearched(const fs::path& written, const fs::path& directory) {
+    if (written.is_absolute()) return written.parent_path().string();
+    std::string places = directory.empty() ? "the current folder" : directory.string();
+    for (const fs::path& folder : searchFolders(directory)) places += ", " + folder.string();
+    return places;
+}
+
+} // namespace
+
+std::optional<fs::path> lookUpFile(const Value& value, const fs::path& directory, Diagnostics& diagnostics,
+                                   FileWish wish) {
+    const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
+    if (nameable && findArrays(value.text)) return fs::path(value.text);
+    const fs::path written(nameable ? value.text : std::string_view());
+    const fs::path path = placeOfFile(written, directory, wish.tiles);
+    if (nameable && isRefused(value, directory, path, wish.user, diagnostics)) return std::nullopt;
     std::error_code error;
     const auto status = fs::status(path, error);
     if (nameable && fs::is_directory(status)) {
@@ -79,10 +110,9 @@ std::optional<fs::path> lookUpFile(const Value& value, const fs::path& directory
                  "pipes and devices are not read");
         return std::nullopt;
     }
-    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) return path;
-    const std::string folder = written.is_absolute() ? written.parent_path().string() : directory.string();
+    if (nameable && (fs::exists(status) || (wish.tiles && hasTile(path)))) return path;
     auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),
-                       fmt::format("looked in {}", folder.empty() ? "the current folder" : folder));
+                       fmt::format("looked in {}", placesSearched(written, directory)));
     if (!nameable) return std::nullopt;
     const fs::path parent = path.parent_path().empty() ? fs::path(".") : path.parent_path();
     if (const std::string similar = similarFile(written, parent); !similar.empty())

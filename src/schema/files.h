@@ -10,13 +10,21 @@
 
 namespace abbe::schema {
 
-// The path of an existing file, looked up beside the scene; nothing after a diagnostic. With `tiles`, `<UDIM>` in its
-// name stands for a number from 1001 to 1999, and one such file is enough.
+// The path of an existing file, looked up beside the text that names it and then in searchFolders(); nothing after a
+// diagnostic. With `tiles`, `<UDIM>` in its name stands for a number from 1001 to 1999, and one such file is enough.
 std::optional<std::filesystem::path> findFile(const Value&, const SceneTree&, Diagnostics&, bool tiles = false);
 
 // The same in a folder, of a file that is not noted as one that a definition names.
+// `user`: the name was given on the command line, where everything may be named that a pack does not forbid.
+struct FileWish {
+    bool tiles = false, user = false;
+};
 std::optional<std::filesystem::path> lookUpFile(const Value&, const std::filesystem::path& directory, Diagnostics&,
-                                                bool tiles = false);
+                                                FileWish = {});
+
+// Where that looks: beside the naming text if the file is there or nowhere, else in the first of searchFolders().
+std::filesystem::path placeOfFile(const std::filesystem::path& written, const std::filesystem::path& directory,
+                                  bool tiles = false);
 
 struct SpectrumFile {
     std::vector<double> numbers; // wavelength in nm, value, wavelength, …

@@ -301,6 +301,12 @@ const std::filesystem::path& SceneTree::directoryOf(Span span) const {
     return found == inserts.end() ? directory : found->second.directory;
 }
 
+bool SceneTree::isOfCommandLine(Span span) const {
+    if (document && span.file == document->file) return false;
+    const auto found = inserts.find(span.file);
+    return found == inserts.end() || found->second.source.empty();
+}
+
 std::vector<Definition> readInsert(SceneTree& tree, Insert insert, const TypeTable& table, Diagnostics& diagnostics) {
     std::vector<Definition> definitions;
     const DefinitionReader reader(table, diagnostics);

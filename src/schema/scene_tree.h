@@ -125,6 +125,8 @@ struct SceneTree {
     // What holds for the text at a place: that of an insert, or of the scene.
     const Header& headerOf(Span) const;
     const std::filesystem::path& directoryOf(Span) const;
+    // Whether the text there is of no file: a value of `-D` or a line of `--set`.
+    bool isOfCommandLine(Span) const;
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;

@@ -127,10 +127,13 @@ class Scene(Definitions):
 
     There is a method for each kind of definition, whose keyword arguments are the properties with `_` in place of `-` (`from_` for `from`).
     Their documentation, `help(abbe.Scene.shape)`, comes from the renderer's own tables.
-    Keyword arguments of `Scene()` are those of the header: `length="mm"`, `rgb="acescg"`, `up="z"`.
+    Keyword arguments of `Scene()` are those of the header, `length="mm"`, `rgb="acescg"`, `up="z"`, and `search`: folders in which files
+    of the scene may read, as with `--search`. What these calls name themselves may lie anywhere.
     """
 
-    def __init__(self, *, length: str | None = None, rgb: str | None = None, up: str | None = None) -> None:
+    def __init__(
+        self, *, length: str | None = None, rgb: str | None = None, up: str | None = None, search: Sequence[str | os.PathLike[str]] = ()
+    ) -> None:
         self._lines: list[Line] = []
         self._names: set[str] = set()
         self._base: str | None = None  # the text of a file
@@ -138,6 +141,7 @@ class Scene(Definitions):
         self._defines: list[str] = []
         self._variants: list[str] = []
         self._sets: list[str] = []
+        self._search = [os.path.abspath(folder) for folder in search]
         self._handle: Any = None
         self._has_arrays = False
         keys = {"length": length, "rgb": rgb, "up": up}
@@ -218,8 +222,12 @@ class Scene(Definitions):
             path = self._path or os.path.join(os.getcwd(), "scene.scene")
             as_file = self._path is not None and not self._lines
             text = None if as_file else self._text(os.path.dirname(os.path.abspath(path)), memory=True)
-            self._handle = _abbe.SceneHandle(path, text, self._defines, self._variants, self._sets)
+            self._handle = _abbe.SceneHandle(path, text, self._defines, self._variants, self._sets, self._folders())
         return self._handle
+
+    def _folders(self) -> list[str]:
+        """Where the scene may read beside its own folder: what was stated, and where files are that the program itself named."""
+        return self._search + sorted(set().union(*(line.folders() for line in self._lines)))
 
     def check(self, frame: int | None = None) -> tuple[Diagnostic, ...]:
         """Everything that `abbe check` finds wrong: raises SceneError if there are errors, returns the warnings."""
@@ -298,15 +306,17 @@ def load(
     *,
     variants: Sequence[str] = (),
     set: Mapping[str, Any] | None = None,
+    search: Sequence[str | os.PathLike[str]] = (),
     **parameters: Any,
 ) -> Scene:
     """The scene of a file, checked: a SceneError has everything that is wrong with it.
 
     Further keyword arguments set parameters of the scene, ``yaw="25 deg"``, as `-D` does. variants: as `--variant`.
-    set: ``{"material.ring.roughness": 0.1}``, as `--set`. Packs and scenes of other programs are read as the command reads them. Definitions
-    that are added to a loaded scene stand behind those of the file.
+    set: ``{"material.ring.roughness": 0.1}``, as `--set`. search: folders beside the scene's own in which it may read, as `--search`.
+    Packs and scenes of other programs are read as the command reads them. Definitions that are added to a loaded scene stand behind those of
+    the file.
     """
-    scene = Scene()
+    scene = Scene(search=search)
     scene._path = os.fspath(path)
     scene._defines = _values_of(parameters)
     scene._variants = list(variants)

@@ -67,7 +67,7 @@ def _scene_path(scene: Scene | str | os.PathLike[str], folder: str) -> tuple[str
     if not isinstance(scene, Scene):
         return os.fspath(scene), []
     words = []
-    for flag, values in (("-D", scene._defines), ("--variant", scene._variants), ("--set", scene._sets)):
+    for flag, values in (("-D", scene._defines), ("--variant", scene._variants), ("--set", scene._sets), ("--search", scene._folders())):
         for value in values:
             words += [flag, value]
     if scene._path is not None and not scene._lines:

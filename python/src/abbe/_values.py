@@ -77,6 +77,11 @@ class Line:
         self.tokens: list[Token] = [name, *tokens]
         self.block = block
 
+    def folders(self) -> set[str]:
+        """Those of the files that are named in it."""
+        own = {os.path.dirname(token.path) for token in self.tokens if isinstance(token, Path)}
+        return own.union(*(line.folders() for line in self.block or ()))
+
     def write(self, out: list[str], folder: str, indent: int, memory: bool) -> None:
         words = [_word(token, folder, memory) for token in self.tokens]
         head = "    " * indent + " ".join(words)

@@ -1,5 +1,6 @@
 #include "exchange/mitsuba/xml_reader.h"
 
+#include "base/enclosure.h"
 #include "base/file.h"
 #include "base/memory_limit.h"
 #include "exchange/mitsuba/xml_values.h"
@@ -390,9 +391,17 @@ std::optional<fs::path> findXmlFile(const XmlScene& scene, const XmlParam& named
     const fs::path name(named.text);
     const fs::path folder = fs::path(import.sources.path(named.span.file)).parent_path();
     const fs::path beside = name.is_absolute() ? name : folder / name;
-    if (fs::is_regular_file(beside, error)) return beside;
-    for (const fs::path& other : scene.searchPaths)
-        if (fs::is_regular_file(other / name, error)) return other / name;
+    std::vector<fs::path> candidates{beside};
+    for (const fs::path& other : scene.searchPaths) candidates.push_back(other / name);
+    if (!name.is_absolute())
+        for (const fs::path& other : searchFolders(folder)) candidates.push_back(other / name);
+    for (const fs::path& path : candidates) {
+        if (!fs::is_regular_file(path, error)) continue;
+        if (mayName(folder, path)) return path;
+        import.diagnostics.error("E0417", named.span, fmt::format("`{}` is outside of the scene's project", named.text))
+            .help = helpOutsideReach(path);
+        return std::nullopt;
+    }
     import.diagnostics.error("E0401", named.span, fmt::format("file not found: `{}`", named.text)).help =
         suggestFile(beside);
     return std::nullopt;

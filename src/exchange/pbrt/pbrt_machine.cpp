@@ -149,7 +149,13 @@ void PbrtMachine::runText(std::string_view text, FileId file) {
 
 void PbrtMachine::directive(PbrtScanner& scanner, const PbrtToken& word) {
     const auto action = actions().find(word.raw);
-    if (action != actions().end()) return (this->*action->second)(scanner, word);
+    if (action != actions().end()) {
+        try {
+            return (this->*action->second)(scanner, word);
+        } catch (const IoError& fault) {
+            return void(shared_.faults().error("E0802", word.span, fault.what()));
+        }
+    }
     auto& d =
         shared_.faults().error("E0801", word.span, fmt::format("there is no directive `{}`", word.raw.substr(0, 40)));
     if (word.raw.size() < 40)

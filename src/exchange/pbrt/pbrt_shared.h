@@ -33,10 +33,8 @@ struct PbrtShared {
     std::list<SceneNode> world = {};       // in pbrt's world
 
     Diagnostics& faults() { return out.diagnostics; }
-    std::filesystem::path file(std::string_view name) const {
-        const std::filesystem::path path(name);
-        return path.is_absolute() ? path : folder / path;
-    }
+    // Throws IoError if a scene in this folder may not read it (base/enclosure.h).
+    std::filesystem::path file(std::string_view name) const;
     // From pbrt's world to ours.
     Transform toOurs() const { return mirrored ? Transform::scale({-1, 1, 1}) : Transform(); }
 };

@@ -70,7 +70,8 @@ GltfImage gltfImage(const GltfDocument& document, int index) {
     const std::filesystem::path folder = std::filesystem::path(document.name()).parent_path();
     std::filesystem::path file = folder / decodedGltfUri(image.uri);
     if (!mayName(folder.empty() ? "." : folder, file))
-        document.fail(fmt::format("{}.uri leads out of the folder of the file", who));
+        document.fail(
+            fmt::format("{}.uri is `{}`, outside of the scene's project; {}", who, image.uri, helpOutsideReach(file)));
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -9,6 +9,7 @@
 #include "unit/io/temporary_folder.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -261,6 +262,9 @@ TEST_CASE("a model in an enclosed folder, as that of a pack, reads nothing outsi
         return formatShort(diagnostics, sources);
     };
     CHECK(import() == "");
+    ::unsetenv("ABBE_PATH"); // and where the scene is not allowed to read
+    CHECK(import().find("`../outside.mtl` are left out") != std::string::npos);
+    ::setenv("ABBE_PATH", "/", 1);
     encloseFolder(folder / "pack");
     const std::string report = import();
     CHECK(report.find("the materials of `../outside.mtl` are left out") != std::string::npos);
