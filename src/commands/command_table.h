@@ -310,7 +310,7 @@ ExitCode run(const LspOptions&, const CommonOptions&);
 struct ReferenceOptions {
     enum class What : std::uint8_t { pages, json, jsonSchema, textmate, man, bash, zsh, fish, share };
     What what = What::pages;
-    std::string folder; // of pages and share
+    std::string where; // the folder of pages and share; of man a command, or empty
 };
 
 extern const char* const kReferenceHelp;

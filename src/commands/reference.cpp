@@ -15,15 +15,15 @@
 
 namespace abbe {
 
-const char* const kReferenceHelp = R"(Writes what the program makes of its own tables: pages, man page, completions.
+const char* const kReferenceHelp = R"(Writes what the program makes of its own tables: pages, man pages, completions.
 
   pages FOLDER      the reference of the scene language, a page of Markdown for each kind
   json              kinds, types, properties, units and data for editors and exporters
   json-schema       JSON Schema of scenes as `abbe fmt --tree` prints them
   textmate          the TextMate grammar by which editors colour scene files
-  man               the manual page, for `man -l`
+  man [COMMAND]     the manual page of the program, or of a command, for `man -l`
   bash, zsh, fish   completion for that shell
-  share FOLDER      man page and completions where systems look for them below FOLDER
+  share FOLDER      man pages and completions where systems look for them below FOLDER
 
 Examples:
   abbe reference pages docs/reference
@@ -44,14 +44,14 @@ constexpr Choice<What> kWhats[] = {
 
 void addArguments(Arguments& a, ReferenceOptions& o) {
     a.choice<What>("what", o.what, {std::begin(kWhats), std::end(kWhats)}, "What is written").require();
-    a.argument("folder", &o.folder, "Where pages and share are written");
+    a.argument("where", &o.where, "Folder that pages and share are written to; command whose page man prints");
     a.afterwards([&o]() -> std::optional<ArgumentFault> {
         const bool needsFolder = o.what == What::pages || o.what == What::share;
         const std::string_view name = std::ranges::find(kWhats, o.what, &Choice<What>::value)->word;
-        if (needsFolder && o.folder.empty())
-            return ArgumentFault{"folder", fmt::format("`{}` needs a folder to write to", name)};
-        if (!needsFolder && !o.folder.empty())
-            return ArgumentFault{"folder", fmt::format("`{}` is written to standard output", name)};
+        if (needsFolder && o.where.empty())
+            return ArgumentFault{"where", fmt::format("`{}` needs a folder to write to", name)};
+        if (!needsFolder && o.what != What::man && !o.where.empty())
+            return ArgumentFault{"where", fmt::format("`{}` is written to standard output", name)};
         return std::nullopt;
     });
 }
@@ -76,10 +76,23 @@ std::string referenceText(What what) {
     if (what == What::jsonSchema) return schema::jsonSchema(language.types);
     if (what == What::textmate) return schema::textMateGrammar(language.types);
     const CommandInfo tree = commandTree(commandTable());
-    if (what == What::man) return manPage(tree, versionNumber());
     const auto topics = schema::explainableWords(language.types);
     if (what == What::bash) return bashCompletion(tree, topics);
     return what == What::zsh ? zshCompletion(tree, topics) : fishCompletion(tree, topics);
+}
+
+std::vector<ManPage> allManPages() { return manPages(commandTree(commandTable()), versionNumber()); }
+
+ExitCode printManPage(const std::string& command, const Console& console) {
+    const std::string name = command.empty() ? "abbe" : "abbe-" + command;
+    const auto pages = allManPages();
+    const auto page = std::ranges::find(pages, name, &ManPage::name);
+    if (page == pages.end()) {
+        console.error(fmt::format("there is no command `{}`; `abbe help` lists all", command));
+        return ExitCode::usage;
+    }
+    console.data(page->text);
+    return ExitCode::done;
 }
 
 void writeInto(const fs::path& folder, const fs::path& name, const std::string& text) {
@@ -95,12 +108,15 @@ ExitCode run(const ReferenceOptions& options, const CommonOptions& common) {
         if (options.what == What::pages) {
             const Language language;
             for (const schema::ReferencePage& page : schema::referencePages(language.types))
-                writeInto(options.folder, page.file, page.text);
+                writeInto(options.where, page.file, page.text);
         } else if (options.what == What::share) {
-            writeInto(options.folder, "man/man1/abbe.1", referenceText(What::man));
-            writeInto(options.folder, "bash-completion/completions/abbe", referenceText(What::bash));
-            writeInto(options.folder, "zsh/site-functions/_abbe", referenceText(What::zsh));
-            writeInto(options.folder, "fish/vendor_completions.d/abbe.fish", referenceText(What::fish));
+            for (const ManPage& page : allManPages())
+                writeInto(options.where, "man/man1/" + page.name + ".1", page.text);
+            writeInto(options.where, "bash-completion/completions/abbe", referenceText(What::bash));
+            writeInto(options.where, "zsh/site-functions/_abbe", referenceText(What::zsh));
+            writeInto(options.where, "fish/vendor_completions.d/abbe.fish", referenceText(What::fish));
+        } else if (options.what == What::man) {
+            return printManPage(options.where, common.console);
         } else {
             common.console.data(referenceText(options.what));
         }

@@ -68,15 +68,20 @@ expect 2 reference man folder
 expect 0 reference json
 "$json_lines" <out >/dev/null || fault "reference json is no JSON"
 expect 0 reference share share
-man=share/man/man1/abbe.1
-says $man "\\-\\-texture\\-cache"
-for request in $(grep -oE '^\.[A-Za-z"\\]+' $man | sort -u); do
-    [[ ' .TH .SH .SS .TP .PP .B .br .nf .fi .\" ' == *" $request "* ]] || fault "the man page has the request $request"
+man=share/man/man1
+says $man/abbe-render.1 "\\-\\-texture\\-cache"
+says $man/abbe-volume.1 "abbe volume convert"
+says $man/abbe.1 "\\-render\\fR(1)"
+for page in "$man"/*.1; do
+    for request in $(grep -oE '^\.[A-Za-z"\\]+' "$page" | sort -u); do
+        [[ ' .TH .SH .SS .TP .PP .B .br .nf .fi .\" ' == *" $request "* ]] || fault "$page has the request $request"
+    done
+    type groff >/dev/null 2>&1 || continue
+    warnings=$(groff -ww -man -k -Tutf8 -Wbreak "$page" 2>&1 >/dev/null)
+    [[ -z $warnings ]] || fault "groff says of $page: $warnings"
 done
-if type groff >/dev/null 2>&1; then
-    warnings=$(groff -ww -man -k -Tutf8 -Wbreak $man 2>&1 >/dev/null)
-    [[ -z $warnings ]] || fault "groff says: $warnings"
-fi
+expect 0 reference man render
+cmp -s out $man/abbe-render.1 || fault "the page of a command is not that which is installed"
 
 compopt() { :; } # only of use while completing
 # shellcheck source=/dev/null
@@ -108,13 +113,14 @@ completes camera.from abbe explain camera.fr
 completes "" abbe render --samples ""
 # Each command and flag that `help` lists is completed.
 for command in $(sed -n 's/^  \([a-z]*\)  .*/\1/p' list | grep -v abbe); do
+    [[ -s $man/abbe-$command.1 ]] || fault "$command has no man page"
     complete_words abbe "$command"
     [[ " ${COMPREPLY[*]} " == *" $command "* ]] || fault "the command $command is not completed"
     [[ $command == volume || $command == farm ]] && continue
     for flag in $("$program" help "$command" | grep -oE '^  (-[A-Za-z],)?--[a-z-]+' | grep -oE -e '--[a-z-]+'); do
         complete_words abbe "$command" "$flag"
         [[ " ${COMPREPLY[*]} " == *" $flag "* ]] || fault "$command $flag is not completed"
-        grep -qF -e "${flag//-/\\-}" $man || fault "$flag is not in the man page"
+        grep -qF -e "${flag//-/\\-}" "$man/abbe-$command.1" || fault "$flag is not in the man page of $command"
     done
 done
 if type zsh >/dev/null 2>&1; then zsh -n share/zsh/site-functions/_abbe || fault "zsh does not read its completion"; fi

@@ -52,7 +52,7 @@ TEST_CASE("nine mistakes give nine diagnostics") {
     REQUIRE(l->get("E0310").related.size() == 1);
     CHECK(l->text(l->get("E0310").related[0].span) == "power 2400 lm");
     CHECK(l->get("E0401").message == "file not found: `hero/bdoy.obj`");
-    CHECK(l->get("E0401").label == "looked in " + folder.path().string());
+    CHECK(l->get("E0401").label.starts_with("looked in " + folder.path().string()));
     CHECK(l->get("E0401").help == "`hero/body.obj` exists");
     CHECK(l->get("E0202").message == "no material is named `sking`");
     CHECK(l->get("E0202").label == "did you mean `skin`?");

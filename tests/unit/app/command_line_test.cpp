@@ -208,7 +208,13 @@ TEST_CASE("pages for shells and man are quoted") {
         {"render", "Pictures", "Renders [a] scene: it's.", ".TH is no request\n'nor this", {}, {}, {}});
     tree.actions[0].flags.push_back({{"--x-y"}, "A|b", {"b"}, false, "Bob's [50 %]: so"});
     tree.actions[0].arguments.push_back({"scene", "A scene", {}, true, false});
-    const std::string man = manPage(tree, "1.2.3");
+    const auto pages = manPages(tree, "1.2.3");
+    REQUIRE(pages.size() == 2);
+    CHECK(pages[0].name == "abbe");
+    CHECK(contains(pages[0].text, "\\fBabbe\\-render\\fR(1)\nRenders [a] scene: it's."));
+    CHECK(pages[1].name == "abbe-render");
+    const std::string man = pages[1].text;
+    CHECK(contains(man, ".TH ABBE\\-RENDER 1 "));
     CHECK(contains(man, "\n\\&.TH is no request\n\\&'nor this\n"));
     CHECK(contains(man, "\\fB\\-\\-x\\-y\\fR"));
     CHECK(contains(man, "abbe 1.2.3"));
