@@ -10,6 +10,7 @@ mkdir -p "$TMPDIR"
 
 # A scene whose files are everywhere: beside it, in a folder, above it, at an absolute path; two of one name; tiles; a
 # glTF file with its buffer; a volume, a lamp, spectra, an environment, parameters.
+touch .abbe-project # whose scenes may name what is in it
 mkdir -p artist/shot/tex artist/library/tex artist/models/buffers "artist/odd name"
 cp "$snippets/any.png" artist/shot/tex/wood.png
 cp "$snippets/any.tif" artist/library/tex/wood.png # by its contents a picture of another kind

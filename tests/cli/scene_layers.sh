@@ -102,6 +102,7 @@ expect 0 replay shot.exr --pixel 16,12 --sample 0:1
 expect 0 verify shot.scene "${chosen[@]}" --samples 32 -q
 
 # A pack has all of it, and what was chosen.
+touch .abbe-project
 mkdir -p elsewhere && cp props/* elsewhere && cp shot.scene elsewhere/shot.scene
 sed -i 's|"room.scene"|"../room.scene"|; s|"props/ball.scene"|"ball.scene"|' elsewhere/shot.scene
 for scene in shot.scene elsewhere/shot.scene; do
