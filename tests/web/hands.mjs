@@ -46,9 +46,12 @@ export function hands(page) {
             for (const end = performance.now() + ms; performance.now() < end; await pause(25)) if (typeof what === "function" ? await what() : await page.evaluate(what)) return true;
             return false;
         },
-        // Waits until the render is done and its last picture is shown: a page that says `Done` may be about to ask for that.
-        done(ms = 60000) {
-            return this.until(`import(document.querySelector("script[type=module]").src.replace("view.js", "picture.js")).then(({live}) => document.getElementById("phase").textContent === "Done" && !live.busy)`, ms);
+        // Waits until the render is done and its last picture is shown: a page that says `Done` may be about to ask for that, and draws it
+        // with the next frame of the screen.
+        async done(ms = 60000) {
+            const came = await this.until(`import(document.querySelector("script[type=module]").src.replace("view.js", "picture.js")).then(({live}) => document.getElementById("phase").textContent === "Done" && !live.busy)`, ms);
+            await page.settled();
+            return came;
         },
     };
 }
