@@ -10,12 +10,14 @@ Composition is USD's own. What is carried over, approximated and left out: docs/
 
 from __future__ import annotations
 
+import gc
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 try:
-    import numpy as _numpy  # noqa: F401
+    import numpy as _numpy
     from pxr import Usd as _Usd  # noqa: F401
 except ImportError as _fault:
     raise ImportError(f"abbe.usd needs usd-core and numpy ({_fault}): pip install 'abbe[usd]'") from _fault
@@ -71,6 +73,18 @@ class Scene:
         write_atomically(target, [print_scene(self._nodes, resolve).encode()])
 
 
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Without the collector of cycles: a scene has none, and with many nodes it would go through all of them again and again."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
+
+
 def load(
     path: str | os.PathLike[str],
     camera: str | None = None,
@@ -89,7 +103,7 @@ def load(
     report = report or Report()
     options = Options(camera, frame, frames, tuple(purposes) if purposes is not None else None, tuple(variants), max_instances)
     stage = open_stage(os.fspath(path), options, report)
-    with quiet():
+    with quiet(), _no_collection(), _numpy.errstate(all="ignore"):  # sums that tell whether numbers are finite may overflow
         context = Context(stage, options, report)
         nodes = Converter(context).run()
     if report.errors:

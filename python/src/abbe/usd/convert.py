@@ -14,6 +14,7 @@ from .context import Context, Place, empty_bounds, write_transform
 from .lights import LIGHTS, Emission, convert_light, emission_colour, glow_of_mesh
 from .materials import Glow, Look, Materials
 from .mesh import convert_mesh
+from .own import Prim
 from .report import Fate
 from .scene_text import Node
 from .shapes import FORMULAS, convert_formula
@@ -31,6 +32,11 @@ class Visit:
     place: Place
     purpose: str
     loose: bool = False  # below a prototype, which need not be defined to be shown
+    stated: Prim | None = None  # what `find` asked of it
+
+    def asked(self) -> Prim:
+        assert self.stated is not None
+        return self.stated
 
 
 @dataclasses.dataclass
@@ -108,22 +114,27 @@ class Converter:
         while stack:
             visit = stack.pop()
             prim = visit.prim
+            visit.stated = stated = Prim(self.ctx.owned, prim)
             if not self._is_shown(visit):
                 continue
-            place = visit.place
-            if prim.IsA(UsdGeom.Xformable):
-                place = Place(place, UsdGeom.Xformable(prim))
-            here = Visit(prim, place, visit.purpose, visit.loose)
+            if "xformOpOrder" in stated.names and prim.IsA(UsdGeom.Xformable):
+                visit.place = Place(visit.place, UsdGeom.Xformable(prim))
             if prim.IsInstance():
-                found.instances.append(here)
+                found.instances.append(visit)
                 continue
-            if self._sort(here, found):
-                stack += [dataclasses.replace(here, prim=child) for child in reversed(children_of(prim, visit.loose))]
+            if self._sort(visit, found) and (prim.IsInstanceProxy() or prim.GetAllChildrenNames()):
+                stack += [Visit(child, visit.place, visit.purpose, visit.loose) for child in reversed(children_of(prim, visit.loose))]
         return found
 
     def _is_shown(self, visit: Visit) -> bool:
         """Whether visibility and purpose show it; sets the purpose that is inherited."""
-        prim, ctx = visit.prim, self.ctx
+        prim, ctx, stated = visit.prim, self.ctx, visit.asked()
+        if "purpose" not in stated.names and "visibility" not in stated.names:
+            # Of a plain type, so that it is a mesh or nothing that purposes choose.
+            if (stated.kind == "Mesh" or (stated.kind and prim.IsInstance())) and visit.purpose not in ctx.purposes:
+                self._hide(prim)
+                return False
+            return True
         if not prim.IsA(UsdGeom.Imageable):
             return True
         imageable = UsdGeom.Imageable(prim)
@@ -148,7 +159,7 @@ class Converter:
 
     def _sort(self, visit: Visit, found: Found) -> bool:
         """Puts a prim where it belongs. True if its children are to be looked at."""
-        prim, kind = visit.prim, str(visit.prim.GetTypeName())
+        prim, kind = visit.prim, visit.asked().kind
         if kind == "Mesh" or kind in FORMULAS or kind in CURVES or kind == "Points":
             found.shapes.append(visit)
         elif kind == "PointInstancer":
@@ -200,12 +211,13 @@ class Converter:
         nodes: list[Node] = []
         bound = self.materials.bound([v.prim for v in visits])
         for visit, material in zip(visits, bound, strict=True):
-            prim, kind = visit.prim, str(visit.prim.GetTypeName())
-            self.ctx.report.count(prim, Fate.CARRIED)
+            prim, stated = visit.prim, visit.asked()
+            kind = stated.kind
+            self.ctx.report.count_path(stated.path, kind, Fate.CARRIED)
             glow = self._glow(visit)
-            look = glow or self.materials.look(prim, material, kind == "Mesh")
+            look = glow or self.materials.look(stated, material, kind == "Mesh")
             if kind == "Mesh":
-                made = convert_mesh(self.ctx, prim, visit.place, look, self._subset_look if glow is None else _always(glow))
+                made = convert_mesh(self.ctx, stated, visit.place, look, self._subset_look if glow is None else _always(glow))
             elif kind in FORMULAS:
                 made = convert_formula(self.ctx, prim, visit.place, look)
             elif kind in CURVES:
@@ -222,12 +234,12 @@ class Converter:
         material = self.materials.bound([prim])[0]
         if material is None:
             material = self.materials.bound([prim.GetParent()])[0]
-        return self.materials.look(prim if material else prim.GetParent(), material, True)
+        return self.materials.look(Prim(self.ctx.owned, prim if material else prim.GetParent()), material, True)
 
     def _glow(self, visit: Visit) -> Look | None:
         """The look of a mesh that is a light."""
         prim = visit.prim
-        light = self._geometry_lights.get(str(prim.GetPath()))
+        light = self._geometry_lights.get(visit.asked().path)
         if light is None and prim.HasAPI(UsdLux.LightAPI):
             light = prim
         if light is None:

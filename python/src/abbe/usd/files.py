@@ -24,10 +24,12 @@ class Stream:
 
     nbytes: int
     blocks: Callable[[], Iterator[Buffer]]
+    first: Callable[[int], Buffer]  # so many bytes from the start on, or more; fewer only where there are no more
 
 
 Part = Union[bytes, memoryview, "np.ndarray", Stream]
 _COMPARED = 8 << 20  # bytes; larger files are not compared with those that are there
+_LIKE = 512  # bytes, by whose start files are told apart before they are made
 
 
 def as_bytes(part: Buffer) -> bytes | memoryview:
@@ -44,6 +46,16 @@ def pieces(parts: Iterable[Part]) -> Iterator[bytes | memoryview]:
     for part in parts:
         for piece in part.blocks() if isinstance(part, Stream) else (part,):
             yield as_bytes(piece)
+
+
+def start_of(parts: Iterable[Part]) -> bytes:
+    """The first bytes, without making all of them."""
+    found = b""
+    for part in parts:
+        found += as_bytes(part.first(_LIKE - len(found)) if isinstance(part, Stream) else part)
+        if len(found) >= _LIKE:
+            break
+    return found[:_LIKE]
 
 
 def write_atomically(path: Path, parts: Iterable[Part]) -> None:
@@ -68,20 +80,37 @@ class SideFiles:
 
     def __init__(self) -> None:
         self.parts: dict[str, list[Part]] = {}
-        self._by_content: dict[tuple[str, bytes], str] = {}
+        self._alike: dict[tuple[str, int, bytes], list[str]] = {}  # files by extension, size and start
+        self._by_content: dict[tuple[str, bytes], str] = {}  # of those that are alike
         self._stems: dict[str, int] = {}
 
     def add(self, stem: str, extension: str, parts: Sequence[Part]) -> FileRef:
         """A file named after `stem`, as far as file systems like it."""
-        if sum(size_of(part) for part in parts) > _COMPARED:
+        size = sum(size_of(part) for part in parts)
+        if size > _COMPARED:
             name = self._free_name(stem, extension)
             self.parts[name] = list(parts)
             return FileRef(name, own=True)
+        alike = self._alike.setdefault((extension, size, start_of(parts)), [])
+        if not alike:
+            name = self._free_name(stem, extension)
+            self.parts[name] = list(parts)
+            alike.append(name)
+            return FileRef(name, own=True)
+        if len(alike) == 1:
+            self._make(alike[0], extension)
         content = (extension, b"".join(pieces(parts)))
         if content not in self._by_content:
             name = self._by_content[content] = self._free_name(stem, extension)
             self.parts[name] = [content[1]]
+            alike.append(name)
         return FileRef(self._by_content[content], own=True)
+
+    def _make(self, name: str, extension: str) -> None:
+        """A file as its bytes, to compare others with it."""
+        whole = self.content(name)
+        self.parts[name] = [whole]
+        self._by_content[(extension, whole)] = name
 
     def content(self, name: str) -> bytes:
         return b"".join(bytes(piece) for piece in pieces(self.parts[name]))

@@ -6,10 +6,11 @@ import dataclasses
 from typing import Any
 
 import numpy as np
-from pxr import Usd, UsdGeom, UsdShade
+from pxr import Usd, UsdShade
 
 from . import nodes  # the readers of nodes enter themselves
 from .context import Context, as_float
+from .own import Prim, Stated
 from .network import Network, node_kind
 from .report import Fate
 from .scene_text import Node
@@ -58,10 +59,11 @@ class Materials:
                     found[i] = material
         return found
 
-    def look(self, prim: Usd.Prim, material: UsdShade.Material | None, is_mesh: bool) -> Look:
+    def look(self, stated: Prim, material: UsdShade.Material | None, is_mesh: bool) -> Look:
         """What a shape of this prim looks like."""
         if material is None:
-            return self._display_colour(prim, is_mesh)
+            return self._display_colour(stated, is_mesh)
+        prim = stated.prim
         path = str(material.GetPath())
         if path not in self._looks:
             self._looks[path] = self._write(material)
@@ -125,10 +127,11 @@ class Materials:
         node.set("midpoint", as_float(middle))
         return node
 
-    def _display_colour(self, prim: Usd.Prim, is_mesh: bool) -> Look:
+    def _display_colour(self, stated: Prim, is_mesh: bool) -> Look:
         """Without a material a shape has its displayColor and displayOpacity."""
-        api = UsdGeom.PrimvarsAPI(prim)
-        colour, opacity = (api.FindPrimvarWithInheritance(f"primvars:{n}") for n in ("displayColor", "displayOpacity"))
+        prim, colour, opacity = stated.prim, *(stated.primvar(n, self.ctx.times.first) for n in ("displayColor", "displayOpacity"))
+        if colour is None and opacity is None:
+            return Look()
         rgb, varies = self._mean(colour, 3)
         alpha, alpha_varies = self._mean(opacity, 1)
         if rgb is None and alpha is None:
@@ -150,12 +153,11 @@ class Materials:
             self._colours[key] = Look(name)
         return self._colours[key]
 
-    def _mean(self, primvar: Any, size: int) -> tuple[tuple[float, ...] | None, bool]:
+    def _mean(self, primvar: Stated | None, size: int) -> tuple[tuple[float, ...] | None, bool]:
         """The mean of a primvar's values within 0 and 1, and whether they differ."""
-        if not primvar or not primvar.HasValue():
+        if primvar is None:
             return None, False
-        values = primvar.Get(self.ctx.times.first)
-        rows = np.asarray(values if values is not None else [], np.float64).reshape(-1, size)
+        rows = np.asarray(primvar.values, np.float64).reshape(-1, size)
         if not len(rows) or not np.isfinite(rows).all():
             return None, False
         rows = np.clip(rows, 0, 1)

@@ -12,6 +12,7 @@ from pxr import Usd, UsdGeom, UsdShade
 from .cages import cage_node
 from .context import Context, Place, write_transform
 from .materials import Look
+from .own import Prim
 from .mesh_data import BadMesh, Surface, part, read_surface, write_polygons
 from .report import Fate
 from .scene_text import Node
@@ -19,13 +20,13 @@ from .scene_text import Node
 Array = npt.NDArray[Any]
 
 
-def subsets_of(ctx: Context, mesh: UsdGeom.Mesh) -> list[tuple[UsdGeom.Subset, Array]]:
+def subsets_of(ctx: Context, prim: Usd.Prim) -> list[tuple[UsdGeom.Subset, Array]]:
     """Subsets with materials, and their faces. Raises BadMesh."""
-    found = []
-    prim = mesh.GetPrim()
-    holds = prim.IsInstanceProxy() or bool(prim.GetAllChildrenNames())
-    subsets = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets() if holds else []
-    face_count = len(mesh.GetFaceVertexCountsAttr().Get(ctx.times.first) or []) if subsets else 0
+    found: list[tuple[UsdGeom.Subset, Array]] = []
+    if not (prim.IsInstanceProxy() or prim.GetAllChildrenNames()):
+        return found
+    subsets = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
+    face_count = len(UsdGeom.Mesh(prim).GetFaceVertexCountsAttr().Get(ctx.times.first) or []) if subsets else 0
     for subset in subsets:
         if subset.GetElementTypeAttr().Get() != UsdGeom.Tokens.face:
             ctx.report.left_out(subset.GetPrim(), "a subset that is none of faces", "materials belong to faces")
@@ -46,7 +47,7 @@ def _with_material(node: Node, look: Look) -> Node:
 
 def _polygon_parts(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], look: Look) -> list[tuple[str, Surface, Look]]:
     """A mesh by materials: the faces of each subset, and those of none."""
-    path = str(surface.prim.GetPath())
+    path = surface.stated.path
     if not subsets:
         return [(path, surface, look)]
     numbers = surface.face_numbers()
@@ -66,21 +67,21 @@ def _polygon_parts(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.S
     return parts
 
 
-def convert_mesh(ctx: Context, prim: Usd.Prim, place: Place, look: Look, look_of_subset: Callable[[UsdGeom.Subset], Look]) -> list[Node]:
+def convert_mesh(ctx: Context, stated: Prim, place: Place, look: Look, look_of_subset: Callable[[UsdGeom.Subset], Look]) -> list[Node]:
     """The shapes that a mesh becomes; none, with remarks, where it cannot be."""
-    mesh = UsdGeom.Mesh(prim)
-    scheme = str(mesh.GetSubdivisionSchemeAttr().Get() or "catmullClark")
+    prim = stated.prim
+    scheme = str(stated.value("subdivisionScheme", Usd.TimeCode.Default()) or "catmullClark")
     try:
-        subsets = [(s, faces, look_of_subset(s)) for s, faces in subsets_of(ctx, mesh)]
+        subsets = [(s, faces, look_of_subset(s)) for s, faces in subsets_of(ctx, prim)]
         looks = [look, *(own for _, _, own in subsets)]
         displaced = next((one.displacement for one in looks if one.displacement), None)
         is_cage = scheme != "none" or displaced is not None
-        surface = read_surface(ctx, mesh, looks, is_cage)
+        surface = read_surface(ctx, stated, looks, is_cage)
         if surface is None:
             ctx.report.count(prim, Fate.LEFT_OUT)
             return []
         if is_cage:
-            node = cage_node(ctx, mesh, surface, scheme, subsets, look)
+            node = cage_node(ctx, UsdGeom.Mesh(prim), surface, scheme, subsets, look)
             shapes = [node] if node else []
         else:
             shapes = []

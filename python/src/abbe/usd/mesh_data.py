@@ -14,12 +14,13 @@ from pxr import Usd, UsdGeom
 from . import ply
 from .context import Context, as_float
 from .materials import Look
+from .own import Prim, Stated
 from .scene_text import Node, number
 from .weld import Primvar, blocks, weld
 
 INLINE = 24  # points of a mesh that is written into the scene
 LEAST_CORNERS = 3
-FEW = 4096  # numbers, of which an array of answers is nothing
+FEW = 1 << 14  # numbers that fit into the cache
 
 Array = npt.NDArray[Any]
 
@@ -37,12 +38,12 @@ class Topology:
     @functools.cached_property
     def least(self) -> int:
         """Corners of the smallest face."""
-        return int(self.counts.min()) if len(self.counts) else 0
+        return int(np.minimum.reduce(self.counts)) if len(self.counts) else 0
 
     @functools.cached_property
     def size(self) -> int | None:
         """Corners of each face, where all have as many."""
-        return self.least if len(self.counts) and self.least == int(self.counts.max()) else None
+        return self.least if len(self.counts) and self.least == int(np.maximum.reduce(self.counts)) else None
 
 
 class BadMesh(Exception):
@@ -50,17 +51,22 @@ class BadMesh(Exception):
 
 
 def all_finite(values: Array) -> bool:
-    """By a sum, which is not finite if one of them is not: without an array of answers. Large numbers may add up to infinity."""
-    if values.size > FEW:
-        with np.errstate(all="ignore"):
-            if math.isfinite(np.add.reduce(values, axis=None)):
-                return True
+    """By a sum, which is not finite if one of them is not: without an array of answers. Large numbers may add up to infinity.
+
+    Of few numbers it is the sum of squares, which is the fastest.
+    """
+    flat = values.reshape(-1)
+    if math.isfinite(np.dot(flat, flat) if len(flat) <= FEW else np.add.reduce(flat)):
+        return True
     return bool(np.isfinite(values).all())
 
 
 def read_points(ctx: Context, geometry: Any, time: float) -> Array:
     """Points in single precision, checked. Raises BadMesh."""
-    values = geometry.GetPointsAttr().Get(time)
+    return checked_points(geometry.GetPointsAttr().Get(time))
+
+
+def checked_points(values: Any) -> Array:
     if values is None:
         return np.zeros((0, 3), np.float32)
     points = np.asarray(values, np.float32)
@@ -70,18 +76,18 @@ def read_points(ctx: Context, geometry: Any, time: float) -> Array:
     return points
 
 
-def read_topology(mesh: UsdGeom.Mesh, time: float, point_count: int) -> Topology:
+def read_topology(stated: Prim, time: float, point_count: int) -> Topology:
     """Faces, checked. Raises BadMesh."""
-    counts = np.asarray(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int32)
-    corners = np.asarray(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int32)
+    counts = np.asarray(stated.value("faceVertexCounts", time) or [], np.int32)
+    corners = np.asarray(stated.value("faceVertexIndices", time) or [], np.int32)
     topology = Topology(counts, corners, point_count)
     if topology.least < 0:
         raise BadMesh(f"face {int(counts.argmin())} has {topology.least} corners")
-    total = int(counts.sum(dtype=np.int64))
+    total = topology.size * len(counts) if topology.size is not None else int(counts.sum(dtype=np.int64))
     if total != len(corners):
         raise BadMesh(f"faceVertexCounts asks for {total} corners, faceVertexIndices has {len(corners)}")
     if len(corners):
-        low, high = int(corners.min()), int(corners.max())
+        low, high = int(np.minimum.reduce(corners)), int(np.maximum.reduce(corners))
         if low < 0 or high >= point_count:
             raise BadMesh(f"a face has point {low if low < 0 else high}, but there are {point_count}")
     return topology
@@ -141,21 +147,21 @@ def to_primvar(name: str, values: Array, indices: Array | None, interpolation: s
     return Primvar(rows, indices, False)
 
 
-def read_primvar(prim: Usd.Prim, name: str, time: float, topology: Topology) -> Primvar | None:
+def read_primvar(stated: Prim, name: str, time: float, topology: Topology) -> Primvar | None:
     """A primvar of the prim or of what holds it; None if there is none. Raises BadMesh."""
-    primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
-    if not primvar or not primvar.HasValue():
-        return None
-    values = primvar.Get(time)
-    if values is None:
-        return None
+    primvar = stated.primvar(name, time)
+    return None if primvar is None else to_primvar_of(name, primvar, topology)
+
+
+def to_primvar_of(name: str, stated: Stated, topology: Topology) -> Primvar | None:
+    """None of what is not numbers. Raises BadMesh."""
+    values, indices, interpolation = stated
     array = np.asarray(values) if hasattr(values, "__len__") and not isinstance(values, str) else np.asarray([values])
     if array.dtype.kind not in "fiu":
         return None
-    if primvar.GetTypeName().scalarType == primvar.GetTypeName():
+    if not type(values).__name__.endswith("Array"):
         array = array.reshape(1, -1)
-    indices = primvar.GetIndices(time) if primvar.IsIndexed() else None
-    return to_primvar(name, array, None if not indices else np.asarray(indices, np.int32), str(primvar.GetInterpolation()), topology)
+    return to_primvar(name, array, None if not indices else np.asarray(indices, np.int32), interpolation, topology)
 
 
 def flipped(topology: Topology) -> Array:
@@ -186,13 +192,17 @@ def of_faces(topology: Topology, keep: Array) -> tuple[Topology, Array]:
 class Surface:
     """A mesh as it was read: all that the parts of it share."""
 
-    prim: Usd.Prim
+    stated: Prim
     topology: Topology
     points: list[tuple[float, Array]]
     uvs: Primvar | None
     normals: list[Primvar]  # one for each key, or none
     attributes: dict[str, Primvar]
     faces: Array | None = None  # the numbers that the faces have in the stage; None: as they are
+
+    @property
+    def prim(self) -> Usd.Prim:
+        return self.stated.prim
 
     def face_numbers(self) -> Array:
         return np.arange(len(self.topology.counts)) if self.faces is None else self.faces
@@ -202,18 +212,22 @@ class Surface:
         return [p for p in found if p.by_corner]
 
 
-def _read_normals(mesh: UsdGeom.Mesh, keys: list[float], topology: Topology) -> list[Primvar]:
+def _read_normals(stated: Prim, keys: list[float], topology: Topology) -> list[Primvar]:
     """Normals of polygons: primvars:normals, else normals; those of whole faces are as good as none."""
-    found = []
+    found: list[Primvar] = []
     for time in keys:
-        primvar = UsdGeom.PrimvarsAPI(mesh.GetPrim()).GetPrimvar("normals")
-        interpolation = str(primvar.GetInterpolation()) if primvar.HasValue() else str(mesh.GetNormalsInterpolation())
-        if interpolation in ("constant", "uniform"):
+        primvar = stated.primvar("normals", time) if "primvars:normals" in stated.names else None
+        if primvar is not None:
+            if primvar.interpolation in ("constant", "uniform"):
+                return []
+            one = to_primvar_of("normals", primvar, topology)
+        elif "normals" not in stated.names:
             return []
-        if primvar.HasValue():
-            one = read_primvar(mesh.GetPrim(), "normals", time, topology)
         else:
-            values = mesh.GetNormalsAttr().Get(time)
+            mesh = UsdGeom.Mesh(stated.prim)
+            interpolation, values = str(mesh.GetNormalsInterpolation()), mesh.GetNormalsAttr().Get(time)
+            if interpolation in ("constant", "uniform"):
+                return []
             one = None if values is None or not len(values) else to_primvar("normals", np.asarray(values), None, interpolation, topology)
         if one is None or one.values.shape[1] != 3:
             return []
@@ -221,11 +235,18 @@ def _read_normals(mesh: UsdGeom.Mesh, keys: list[float], topology: Topology) -> 
     return found
 
 
-def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: bool) -> Surface | None:
+def _points_of_mesh(ctx: Context, stated: Prim) -> list[tuple[float, Array]]:
+    """Its points at each key. Raises BadMesh."""
+    times, prim = ctx.times, stated.prim
+    moves = times.last > times.first and ("velocities" in stated.names or prim.GetAttribute("points").ValueMightBeTimeVarying())
+    return moving_points(ctx, UsdGeom.Mesh(prim), prim) if moves else [(times.first, checked_points(stated.value("points", times.first)))]
+
+
+def read_surface(ctx: Context, stated: Prim, looks: list[Look], is_cage: bool) -> Surface | None:
     """A mesh with what its materials ask for. None where there is nothing to show. Raises BadMesh."""
-    prim, time = mesh.GetPrim(), ctx.times.first
-    points = moving_points(ctx, mesh, prim)
-    topology = read_topology(mesh, time, len(points[0][1]))
+    prim, time = stated.prim, ctx.times.first
+    points = _points_of_mesh(ctx, stated)
+    topology = read_topology(stated, time, len(points[0][1]))
     if not len(topology.corners) or not len(points[0][1]):
         ctx.report.left_out(prim, "a mesh without faces", "it shows nothing")
         return None
@@ -235,7 +256,7 @@ def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: b
     uv_names = [look.uv for look in looks if look.uv]
     uvs = None
     for name in [*dict.fromkeys(uv_names), "st"] if uv_names else ["st"]:
-        uvs = read_primvar(prim, name, time, topology)
+        uvs = read_primvar(stated, name, time, topology)
         if uvs is not None and uvs.values.shape[1] >= 2:
             uvs.values = uvs.values[:, :2]
             break
@@ -246,16 +267,16 @@ def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: b
     attributes = {}
     for look in looks:
         for name, (source, size, fallback) in look.attributes.items():
-            values = read_primvar(prim, source, time, topology)
+            values = read_primvar(stated, source, time, topology)
             if values is None or values.values.shape[1] < size:
                 rows = np.asarray([fallback], np.float32).reshape(1, -1)
                 values = Primvar(rows, np.zeros(len(points[0][1]), np.int32), False)
             values.values = values.values[:, :size]
             attributes[name] = values
-    normals = [] if is_cage else _read_normals(mesh, [key for key, _ in points], topology)
-    surface = Surface(prim, topology, points, uvs, normals, attributes)
+    normals = [] if is_cage else _read_normals(stated, [key for key, _ in points], topology)
+    surface = Surface(stated, topology, points, uvs, normals, attributes)
     if not is_cage:
-        holes = np.asarray(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
+        holes = np.asarray(stated.value("holeIndices", time) or [], np.int64)
         if len(holes) and (int(holes.min()) < 0 or int(holes.max()) >= len(topology.counts)):
             raise BadMesh(f"holeIndices names face {int(holes.max())}, but there are {len(topology.counts)}")
         gone = np.union1d(gone, holes).astype(np.int64) if len(holes) else gone
@@ -263,7 +284,7 @@ def read_surface(ctx: Context, mesh: UsdGeom.Mesh, looks: list[Look], is_cage: b
         surface.topology, kept = without_faces(topology, gone)
         surface.faces = np.delete(np.arange(len(topology.counts)), gone)
         _select(surface, kept)
-    if mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded:
+    if stated.value("orientation", time) == UsdGeom.Tokens.leftHanded:
         order = flipped(surface.topology)
         surface.topology = dataclasses.replace(surface.topology, corners=surface.topology.corners[order])
         _select(surface, order)
@@ -290,7 +311,7 @@ def part(surface: Surface, faces: Array) -> Surface:
 
     normals = [n for n in (taken(p) for p in surface.normals) if n is not None]
     attributes = {k: v for k, v in ((k, taken(p)) for k, p in surface.attributes.items()) if v is not None}
-    return Surface(surface.prim, topology, surface.points, taken(surface.uvs), normals, attributes, surface.face_numbers()[faces])
+    return Surface(surface.stated, topology, surface.points, taken(surface.uvs), normals, attributes, surface.face_numbers()[faces])
 
 
 def vertices(surface: Surface) -> tuple[Array, Array | None, Array | None]:

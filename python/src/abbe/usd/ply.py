@@ -57,7 +57,12 @@ def _even_faces(corners: Ints, size: int) -> Stream:
             some["corners"] = faces[block]
             yield some
 
-    return Stream(len(faces) * kind.itemsize, made)
+    def first(size: int) -> Buffer:
+        rows = np.empty(min(len(faces), size // kind.itemsize + 1), kind)
+        rows["length"], rows["corners"] = faces.shape[1], faces[: len(rows)]
+        return rows
+
+    return Stream(len(faces) * kind.itemsize, made, first)
 
 
 def _face_bytes(counts: Ints, corners: Ints) -> tuple[str, npt.NDArray[np.uint8]]:
@@ -87,18 +92,25 @@ def mesh(groups: Sequence[Group], counts: Ints, corners: Ints, size: int | None)
     names = [name for group in groups for name in group[0]]
     count = groups[0][1]
 
+    def fill(rows: Floats, block: slice) -> Floats:
+        some, at = rows[: block.stop - block.start], 0
+        for own, _, values in groups:
+            some[:, at : at + len(own)] = values(block)
+            at += len(own)
+        return some
+
     def vertices() -> Iterator[Buffer]:
         rows = np.empty((min(count, BLOCK), len(names)), "<f4")
         for block in blocks(count):
-            some, at = rows[: block.stop - block.start], 0
-            for own, _, values in groups:
-                some[:, at : at + len(own)] = values(block)
-                at += len(own)
-            yield some
+            yield fill(rows, block)
+
+    def first(size: int) -> Buffer:
+        some = slice(0, min(count, size // (4 * len(names)) + 1))
+        return fill(np.empty((some.stop, len(names)), "<f4"), some)
 
     length, faces = ("uchar", _even_faces(corners, size)) if size is not None and size <= 255 else _face_bytes(counts, corners)
     tail = [f"element face {len(counts)}", f"property list {length} int vertex_indices"]
-    return [_header(count, [(name, "float") for name in names], tail), Stream(4 * count * len(names), vertices), faces]
+    return [_header(count, [(name, "float") for name in names], tail), Stream(4 * count * len(names), vertices, first), faces]
 
 
 def _lines(prefix: str, rows: npt.NDArray[np.generic]) -> str:

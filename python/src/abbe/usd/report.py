@@ -95,7 +95,10 @@ class Report:
 
     def count(self, prim: Any, fate: Fate) -> None:
         """Counts a prim once; what is said last holds."""
-        path, kind = str(prim.GetPath()), str(prim.GetTypeName()) or "untyped"
+        self.count_path(str(prim.GetPath()), str(prim.GetTypeName()), fate)
+
+    def count_path(self, path: str, kind: str, fate: Fate) -> None:
+        kind = kind or "untyped"
         old = self._fates.get(path)
         if old is not None:
             self.counts[old[0]][old[1]] -= 1

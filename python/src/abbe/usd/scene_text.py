@@ -35,6 +35,8 @@ def number(x: float) -> str:
 
 def quoted(text: str) -> str:
     """Text between quotes. What is no Unicode character becomes U+FFFD."""
+    if text.isascii() and text.isprintable() and '"' not in text and "\\" not in text:
+        return f'"{text}"'
     text = text.encode("utf-8", "replace").decode("utf-8")
     escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\r": "\\r", "\t": "\\t", "\b": "\\b", "\f": "\\f"}
     out = "".join(escapes.get(c, c) for c in text)

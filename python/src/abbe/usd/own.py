@@ -1,0 +1,96 @@
+"""What a prim states itself, so that nothing is asked that has the value of its schema.
+
+Each question to USD costs a microsecond or four, and a mesh has some thirty of them, of which it answers six. One question for
+the names of what is authored saves the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from typing import Any, NamedTuple
+
+from pxr import Usd, UsdGeom
+
+# Prims that come in great numbers, and what may be applied to them without another value of what is asked here.
+_PLAIN_TYPES = frozenset({"Mesh", "Xform", "Scope", ""})
+_PLAIN_SCHEMAS = frozenset({"MaterialBindingAPI", "SkelBindingAPI", "GeomModelAPI", "MotionAPI", "VisibilityAPI"})
+
+
+class _Everything:
+    """Of a prim that has to be asked."""
+
+    def __contains__(self, name: object) -> bool:
+        return True
+
+
+_EVERYTHING = _Everything()
+
+
+class Owned:
+    """Which properties prims have opinions on, and which primvars they hand down."""
+
+    def __init__(self, stage: Usd.Stage) -> None:
+        # Clips give values to properties on which no layer of the stage has an opinion.
+        self._ask = any(prim.HasAuthoredMetadata("clips") for prim in stage.TraverseAll())
+        self._handed: dict[Any, frozenset[str]] = {}
+
+    def names(self, prim: Usd.Prim, kind: str) -> Container[str]:
+        """The properties whose values may be others than those of the schema. `kind` is the type of the prim."""
+        if self._ask or kind not in _PLAIN_TYPES or not _PLAIN_SCHEMAS.issuperset(prim.GetAppliedSchemas()):
+            return _EVERYTHING
+        return frozenset(prim.GetAuthoredPropertyNames())
+
+    def handed(self, parent: Usd.Prim) -> Container[str]:
+        """The primvars, without `primvars:`, that what stands below a prim may inherit."""
+        if self._ask:
+            return _EVERYTHING
+        path = parent.GetPath()
+        found = self._handed.get(path)
+        if found is None:
+            found = frozenset(p.GetPrimvarName() for p in UsdGeom.PrimvarsAPI(parent).FindInheritablePrimvars())
+            self._handed[path] = found
+        return found
+
+
+class Stated(NamedTuple):
+    """A primvar as it is stated."""
+
+    values: Any
+    indices: Any
+    interpolation: str
+
+
+class Prim:
+    """A prim on its way, with what was asked already."""
+
+    __slots__ = ("_handed", "_owned", "kind", "names", "path", "prim")
+
+    def __init__(self, owned: Owned, prim: Usd.Prim) -> None:
+        self.prim = prim
+        self.path = str(prim.GetPath())
+        self.kind = str(prim.GetTypeName())
+        self.names = owned.names(prim, self.kind)
+        self._owned = owned
+        self._handed: Container[str] | None = None
+
+    def value(self, name: str, time: Usd.TimeCode, otherwise: Any = None) -> Any:
+        """The value of an attribute; `otherwise`, which is that of the schema, where there is no opinion."""
+        return self.prim.GetAttribute(name).Get(time) if name in self.names else otherwise
+
+    def primvar(self, name: str, time: float) -> Stated | None:
+        """The primvar of this prim or of what holds it, at a time; None where there is none with a value."""
+        name = name.removeprefix("primvars:")
+        full = f"primvars:{name}"
+        if full not in self.names:
+            if self._handed is None:
+                self._handed = self._owned.handed(self.prim.GetParent())
+            if name not in self._handed:
+                return None
+        elif self.names is not _EVERYTHING and f"{full}:indices" not in self.names:
+            attribute = self.prim.GetAttribute(full)
+            values = attribute.Get(time)
+            if values is not None:
+                return Stated(values, None, str(attribute.GetMetadata("interpolation") or UsdGeom.Tokens.constant))
+        found = UsdGeom.PrimvarsAPI(self.prim).FindPrimvarWithInheritance(full)
+        values = found.Get(time) if found and found.HasValue() else None
+        return None if values is None else Stated(values, found.GetIndices(time) if found.IsIndexed() else None, str(found.GetInterpolation()))
