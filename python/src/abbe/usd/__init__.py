@@ -25,6 +25,7 @@ except ImportError as _fault:
 from .context import Context, Options
 from .convert import Converter
 from .files import SideFiles, write_atomically
+from .reach import folders_to_state, foreign_files
 from .report import Fate, Remark, Report, StageError
 from .scene_text import FileRef, Node, print_scene
 from .stage import open_stage, quiet
@@ -35,8 +36,9 @@ __all__ = ["Fate", "Options", "Remark", "Report", "Scene", "StageError", "load"]
 class Scene:
     """What a stage became: a scene in memory, with the files that it needs."""
 
-    def __init__(self, report: Report, files: SideFiles, nodes: Sequence[Node]) -> None:
+    def __init__(self, report: Report, files: SideFiles, nodes: Sequence[Node], stage: str | os.PathLike[str]) -> None:
         self.report = report
+        self._stage = Path(stage)
         self._files = files
         self._nodes = nodes
 
@@ -49,6 +51,11 @@ class Scene:
     def files(self) -> dict[str, bytes]:
         """The files that are written beside the scene, by name."""
         return {name: self._files.content(name) for name in self._files.parts}
+
+    def search(self, path: str | os.PathLike[str]) -> list[str]:
+        """Folders with files of the stage that the scene, written to `path`, may read only if it is told so: by `--search`, or by
+        `abbe.load(path, search=…)`. None where all is in its own folder or project, or in those of $ABBE_PATH."""
+        return folders_to_state(foreign_files(self._nodes), Path(path), self._stage)
 
     def write(self, path: str | os.PathLike[str], force: bool = False) -> None:
         """Writes the scene, and its files into the folder NAME-files beside it.
@@ -108,4 +115,4 @@ def load(
         nodes = Converter(context).run()
     if report.errors:
         raise StageError(f"{len(report.errors)} errors", report, 3 if all(e.code == "E0401" for e in report.errors) else 1)
-    return Scene(report, context.files, nodes)
+    return Scene(report, context.files, nodes, path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import shlex
 import sys
 import traceback
 from pathlib import Path
@@ -74,19 +75,20 @@ def run(arguments: list[str]) -> int:
     report = Report()
     output = Path(given.output) if given.output else Path(given.stage).with_suffix(".scene")
     purposes = [p.strip() for p in given.purpose.split(",")] if given.purpose else None
-    code = 0
+    code, search = 0, []
     try:
         scene = load(given.stage, given.camera, given.frame, frames, purposes, variants, given.max_instances, report)
         if given.strict and report.warning_count:
             code = WARNINGS
         else:
             scene.write(output, given.force)
+            search = scene.search(output)
     except StageError as fault:
         code = fault.exit_code
     except OSError as fault:
         report.error("E0402", None, "the scene cannot be written", str(fault))
         code = NO_FILE
-    _finish(given.json, str(output), report, code)
+    _finish(given.json, str(output), report, code, search)
     return code
 
 
@@ -116,13 +118,13 @@ def _reverse(given: argparse.Namespace) -> int:
         return NO_FILE
 
 
-def _finish(as_json: bool, output: str, report: object, code: int) -> None:
+def _finish(as_json: bool, output: str, report: object, code: int, search: list[str]) -> None:
     from . import Report
 
     assert isinstance(report, Report)
     written = output if code == 0 else None
     if as_json:
-        text = {"scene": written, "exit": code, "warnings": report.warning_count, "errors": len(report.errors), **report.as_json()}
+        text = {"scene": written, "search": search, "exit": code, "warnings": report.warning_count, "errors": len(report.errors), **report.as_json()}
         sys.stdout.write(json.dumps(text, indent=2, ensure_ascii=False) + "\n")
         return
     for remark in report.remarks:
@@ -131,7 +133,11 @@ def _finish(as_json: bool, output: str, report: object, code: int) -> None:
     if summary:
         sys.stdout.write(summary + "\n")
     count = f"{report.warning_count} warnings, {len(report.errors)} errors"
-    sys.stdout.write(f"scene {output}   {count}\n" if written else f"nothing is written   {count}\n")
+    if not written:
+        sys.stdout.write(f"nothing is written   {count}\n")
+        return
+    words = "".join(f" --search {shlex.quote(folder)}" for folder in search)
+    sys.stdout.write(f"scene {output}   {count}; next: abbe render {shlex.quote(output)}{words}\n")
 
 
 def main() -> NoReturn:
