@@ -7,6 +7,7 @@
 #include "checkpoints/render_checkpoint.h"
 #include "commands/command_table.h"
 
+#include <chrono>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -61,10 +62,17 @@ nb::dict summaryDict(const RenderSummary& s) {
 // Whether this thread is inside of a call of `progress`, which must not render itself: it would wait for itself.
 thread_local bool inProgress = false;
 
+// How long a render that is stopped while its scene is read and built may take to come to its end, before it is
+// abandoned.
+constexpr std::chrono::milliseconds kPatience{400};
+
 // Looks after Python while the job renders: signals and `progress` are the calling thread's. What they throw ends the
-// job, and is thrown when nothing of it runs any more.
-void follow(RenderJob& job, nb::object progress) {
+// job, and is thrown when nothing of it runs any more; or while the scene is still read or built, which nothing ends,
+// and then the job is abandoned.
+void follow(std::unique_ptr<RenderJob>& owned, nb::object progress) {
+    RenderJob& job = *owned;
     std::optional<nb::python_error> raised;
+    std::chrono::steady_clock::time_point since;
     for (bool done = false; !done;) {
         {
             const nb::gil_scoped_release free;
@@ -74,7 +82,10 @@ void follow(RenderJob& job, nb::object progress) {
         }
         if (raised) {
             job.takeProgress();
-            continue;
+            if (done || job.isBuilt() || std::chrono::steady_clock::now() - since < kPatience) continue;
+            const nb::gil_scoped_release free;
+            RenderJob::abandon(std::move(owned));
+            break;
         }
         try {
             if (PyErr_CheckSignals() != 0) nb::raise_python_error();
@@ -86,6 +97,7 @@ void follow(RenderJob& job, nb::object progress) {
         } catch (nb::python_error& e) {
             inProgress = false;
             raised.emplace(std::move(e));
+            since = std::chrono::steady_clock::now();
         }
     }
     if (raised) throw std::move(*raised);
@@ -97,7 +109,7 @@ nb::tuple render(std::shared_ptr<SceneHandle> scene, RenderOptions options, int 
     {
         auto job = std::make_unique<RenderJob>(std::move(scene), std::move(options), threads);
         try {
-            follow(*job, std::move(progress));
+            follow(job, std::move(progress));
         } catch (...) {
             const nb::gil_scoped_release free;
             job.reset();

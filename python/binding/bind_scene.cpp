@@ -1,3 +1,4 @@
+#include "binding/background.h"
 #include "binding/bindings.h"
 #include "binding/diagnostic_records.h"
 #include "binding/scene_handle.h"
@@ -32,6 +33,18 @@ std::shared_ptr<SceneHandle> makeScene(std::string path, std::optional<std::stri
     return std::make_shared<SceneHandle>(std::move(input));
 }
 
+std::shared_ptr<DiagnosticLog> check(const std::shared_ptr<SceneHandle>& scene, std::optional<int> frame) {
+    // Without the handle, whose end would need Python's lock.
+    const auto log = std::make_shared<std::shared_ptr<DiagnosticLog>>();
+    runInterruptibly([log, input = scene->input(), frame] { *log = checkScene(input, frame); });
+    return *log;
+}
+
+// It may have to wait for a render of this process.
+void forget(const std::shared_ptr<SceneHandle>& scene) {
+    runInterruptibly([scene] { scene->forget(); });
+}
+
 } // namespace
 
 void bindScene(nb::module_& m) {
@@ -42,8 +55,9 @@ void bindScene(nb::module_& m) {
     nb::class_<SceneHandle>(m, "SceneHandle")
         .def(nb::new_(&makeScene), nb::arg("path"), nb::arg("text").none(), nb::arg("defines"), nb::arg("variants"),
              nb::arg("sets"), nb::arg("search"))
-        .def("check", &SceneHandle::check, nb::arg("frame").none(), nb::call_guard<nb::gil_scoped_release>())
-        .def("forget", &SceneHandle::forget, nb::call_guard<nb::gil_scoped_release>());
+        .def("check", &check, nb::arg("frame").none())
+        .def("forget", &forget);
+    m.def("wait_for_abandoned", &Abandoned::waitForAll, nb::call_guard<nb::gil_scoped_release>());
 }
 
 } // namespace abbe::python

@@ -2,6 +2,7 @@
 
 #include "base/memory_limit.h"
 #include "base/parallel.h"
+#include "binding/background.h"
 #include "binding/command_words.h"
 #include "binding/scene_handle.h"
 
@@ -23,7 +24,7 @@ class RenderJob::Host final : public RenderHost {
       public:
         explicit Report(RenderJob& job) : job_(job) {}
         void start(const RenderStart&) override {}
-        void phase(const std::string&, double) override {}
+        void phase(const std::string& name, double) override { job_.endPhase(name); }
         void progress(const Progress& p) override {
             {
                 const std::scoped_lock lock(job_.mutex_);
@@ -70,6 +71,27 @@ bool RenderJob::wantsStop() {
 void RenderJob::begin() {
     const std::scoped_lock lock(mutex_);
     running_ = true;
+}
+
+// A scene is read and built to its end, which nothing interrupts; between the two, and before the first sample, a
+// render does.
+void RenderJob::endPhase(const std::string& name) {
+    {
+        const std::scoped_lock lock(mutex_);
+        if (built_) return;
+        built_ = name == "committing"; // the last of building
+    }
+    if (wantsStop()) throw RenderStopped("the render was stopped before it began");
+}
+
+bool RenderJob::isBuilt() {
+    const std::scoped_lock lock(mutex_);
+    return built_;
+}
+
+void RenderJob::abandon(std::unique_ptr<RenderJob> job) {
+    job->stop();
+    std::thread([job = std::move(job), abandoned = std::make_unique<Abandoned>()]() mutable { job.reset(); }).detach();
 }
 
 void RenderJob::run() {

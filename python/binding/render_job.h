@@ -48,6 +48,10 @@ class RenderJob {
     std::optional<Progress> takeProgress();
     // To be called again until done(): a render that only begins takes no notice.
     void stop();
+    // Whether reading and building are over, so that it ends soon after stop().
+    bool isBuilt();
+    // Stops a job that need not be waited for: its destructor is run elsewhere, when it has come to an end.
+    static void abandon(std::unique_ptr<RenderJob>);
     // After done(). Throws what the render threw.
     RenderOutcome outcome();
 
@@ -55,6 +59,7 @@ class RenderJob {
     class Host;
     void begin();
     bool wantsStop();
+    void endPhase(const std::string& name);
     void run();
 
     std::shared_ptr<SceneHandle> scene_;
@@ -65,7 +70,7 @@ class RenderJob {
     std::optional<Progress> progress_;
     RenderOutcome outcome_;
     std::exception_ptr fault_;
-    bool done_ = false, running_ = false, stopWanted_ = false;
+    bool done_ = false, running_ = false, built_ = false, stopWanted_ = false;
     std::unique_ptr<std::thread> thread_;
 };
 

@@ -9,8 +9,7 @@ std::mutex& SceneHandle::oneAtATime() {
     return mutex;
 }
 
-std::shared_ptr<DiagnosticLog> SceneHandle::check(std::optional<int> frame) {
-    SceneInput input = input_;
+std::shared_ptr<DiagnosticLog> checkScene(SceneInput input, std::optional<int> frame) {
     input.frame = frame;
     auto log = std::make_shared<DiagnosticLog>();
     const auto loaded = loadScene(input);

@@ -19,9 +19,6 @@ class SceneHandle {
   public:
     explicit SceneHandle(SceneInput input) : input_(std::move(input)) {}
 
-    // Everything that is wrong, as `abbe check` has it. Of a moment of an animation, if there is one.
-    std::shared_ptr<DiagnosticLog> check(std::optional<int> frame);
-
     const SceneInput& input() const { return input_; }
     // One render of a process at a time: threads, stop flags and what is carried on are its own.
     static std::mutex& oneAtATime();
@@ -33,5 +30,8 @@ class SceneHandle {
     SceneInput input_;
     RenderCarry carry_;
 };
+
+// Everything that is wrong, as `abbe check` has it. Of a moment of an animation, if there is one.
+std::shared_ptr<DiagnosticLog> checkScene(SceneInput, std::optional<int> frame);
 
 } // namespace abbe::python

@@ -35,6 +35,8 @@ class SceneHandle:
 
     def forget(self) -> None: ...
 
+def wait_for_abandoned() -> bool: ...
+
 class IoError(OSError):
     pass
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from abbe import _abbe
+from abbe import _abbe, _end  # noqa: F401 (_end enters itself)
 from abbe._arrays import ARRAYS_DOC, take_arrays
 from abbe._errors import Diagnostic, SceneError, diagnostics_of, one_fault, raise_errors
 from abbe._image import Image, Progress, outcome
