@@ -122,7 +122,7 @@ class Converter:
             if prim.IsInstance():
                 found.instances.append(visit)
                 continue
-            if self._sort(visit, found) and (prim.IsInstanceProxy() or prim.GetAllChildrenNames()):
+            if self._sort(visit, found) and stated.has_children:
                 stack += [Visit(child, visit.place, visit.purpose, visit.loose) for child in reversed(children_of(prim, visit.loose))]
         return found
 
@@ -240,7 +240,7 @@ class Converter:
         """The look of a mesh that is a light."""
         prim = visit.prim
         light = self._geometry_lights.get(visit.asked().path)
-        if light is None and prim.HasAPI(UsdLux.LightAPI):
+        if light is None and not visit.asked().is_plain and prim.HasAPI(UsdLux.LightAPI):
             light = prim
         if light is None:
             return None

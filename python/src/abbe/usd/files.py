@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import io
+import itertools
 import os
 import re
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Union
@@ -29,6 +30,7 @@ class Stream:
 
 Part = Union[bytes, memoryview, "np.ndarray", Stream]
 _COMPARED = 8 << 20  # bytes; larger files are not compared with those that are there
+_numbers = itertools.count()
 _LIKE = 512  # bytes, by whose start files are told apart before they are made
 
 
@@ -58,16 +60,27 @@ def start_of(parts: Iterable[Part]) -> bytes:
     return found[:_LIKE]
 
 
+def _new_file(path: Path) -> tuple[int, str]:
+    """Opens a file that was not there, beside a path and with the rights that new files have."""
+    while True:
+        name = os.path.join(path.parent, f".{path.name[:40]}.{os.getpid()}-{next(_numbers)}.tmp")
+        with contextlib.suppress(FileExistsError):  # of an earlier process that was killed
+            return os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666), name
+
+
+def _write_all(stream: io.RawIOBase | io.FileIO, piece: bytes | memoryview) -> None:
+    rest = memoryview(piece)
+    while len(rest):
+        rest = rest[stream.write(rest) or 0 :]
+
+
 def write_atomically(path: Path, parts: Iterable[Part]) -> None:
     """Writes a file under another name and renames it, so that nobody ever reads half of it. Raises OSError."""
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name[:40]}.", dir=path.parent)
+    descriptor, name = _new_file(path)
     try:
-        with os.fdopen(descriptor, "wb") as stream:
+        with os.fdopen(descriptor, "wb", buffering=0) as stream:
             for piece in pieces(parts):
-                stream.write(piece)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
+                _write_all(stream, piece)
         os.replace(name, path)
     except BaseException:
         with contextlib.suppress(OSError):

@@ -20,11 +20,12 @@ from .scene_text import Node
 Array = npt.NDArray[Any]
 
 
-def subsets_of(ctx: Context, prim: Usd.Prim) -> list[tuple[UsdGeom.Subset, Array]]:
+def subsets_of(ctx: Context, stated: Prim) -> list[tuple[UsdGeom.Subset, Array]]:
     """Subsets with materials, and their faces. Raises BadMesh."""
     found: list[tuple[UsdGeom.Subset, Array]] = []
-    if not (prim.IsInstanceProxy() or prim.GetAllChildrenNames()):
+    if not stated.has_children:
         return found
+    prim = stated.prim
     subsets = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
     face_count = len(UsdGeom.Mesh(prim).GetFaceVertexCountsAttr().Get(ctx.times.first) or []) if subsets else 0
     for subset in subsets:
@@ -72,7 +73,7 @@ def convert_mesh(ctx: Context, stated: Prim, place: Place, look: Look, look_of_s
     prim = stated.prim
     scheme = str(stated.value("subdivisionScheme", Usd.TimeCode.Default()) or "catmullClark")
     try:
-        subsets = [(s, faces, look_of_subset(s)) for s, faces in subsets_of(ctx, prim)]
+        subsets = [(s, faces, look_of_subset(s)) for s, faces in subsets_of(ctx, stated)]
         looks = [look, *(own for _, _, own in subsets)]
         displaced = next((one.displacement for one in looks if one.displacement), None)
         is_cage = scheme != "none" or displaced is not None

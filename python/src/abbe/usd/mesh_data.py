@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import math
 from typing import Any
 
@@ -35,15 +34,11 @@ class Topology:
     def starts(self) -> Array:
         return np.cumsum(self.counts, dtype=np.int64) - self.counts
 
-    @functools.cached_property
-    def least(self) -> int:
-        """Corners of the smallest face."""
-        return int(np.minimum.reduce(self.counts)) if len(self.counts) else 0
-
-    @functools.cached_property
-    def size(self) -> int | None:
-        """Corners of each face, where all have as many."""
-        return self.least if len(self.counts) and self.least == int(np.maximum.reduce(self.counts)) else None
+    def __post_init__(self) -> None:
+        counts = self.counts
+        self.least = int(np.minimum.reduce(counts)) if len(counts) else 0  # corners of the smallest face
+        # Corners of each face, where all have as many.
+        self.size: int | None = self.least if len(counts) and self.least == int(np.maximum.reduce(counts)) else None
 
 
 class BadMesh(Exception):
@@ -86,8 +81,8 @@ def read_topology(stated: Prim, time: float, point_count: int) -> Topology:
     total = topology.size * len(counts) if topology.size is not None else int(counts.sum(dtype=np.int64))
     if total != len(corners):
         raise BadMesh(f"faceVertexCounts asks for {total} corners, faceVertexIndices has {len(corners)}")
-    if len(corners):
-        low, high = int(np.minimum.reduce(corners)), int(np.maximum.reduce(corners))
+    if len(corners) and int(np.maximum.reduce(corners.view(np.uint32))) >= point_count:  # numbers below 0 are large ones there
+        low, high = int(corners.min()), int(corners.max())
         if low < 0 or high >= point_count:
             raise BadMesh(f"a face has point {low if low < 0 else high}, but there are {point_count}")
     return topology
@@ -282,6 +277,9 @@ def read_surface(ctx: Context, stated: Prim, looks: list[Look], is_cage: bool) -
         gone = np.union1d(gone, holes).astype(np.int64) if len(holes) else gone
     if len(gone):
         surface.topology, kept = without_faces(topology, gone)
+        if not len(kept):
+            ctx.report.left_out(prim, "a mesh without faces", "those it has are holes, or have no area")
+            return None
         surface.faces = np.delete(np.arange(len(topology.counts)), gone)
         _select(surface, kept)
     if stated.value("orientation", time) == UsdGeom.Tokens.leftHanded:

@@ -32,7 +32,7 @@ class Owned:
     def __init__(self, stage: Usd.Stage) -> None:
         # Clips give values to properties on which no layer of the stage has an opinion.
         self._ask = any(prim.HasAuthoredMetadata("clips") for prim in stage.TraverseAll())
-        self._handed: dict[Any, frozenset[str]] = {}
+        self._handed: dict[str, frozenset[str]] = {}  # by the path of a prim
 
     def names(self, prim: Usd.Prim, kind: str) -> Container[str]:
         """The properties whose values may be others than those of the schema. `kind` is the type of the prim."""
@@ -40,15 +40,15 @@ class Owned:
             return _EVERYTHING
         return frozenset(prim.GetAuthoredPropertyNames())
 
-    def handed(self, parent: Usd.Prim) -> Container[str]:
-        """The primvars, without `primvars:`, that what stands below a prim may inherit."""
+    def inherited(self, prim: Usd.Prim, path: str) -> Container[str]:
+        """The primvars, without `primvars:`, that a prim may have from those that hold it."""
         if self._ask:
             return _EVERYTHING
-        path = parent.GetPath()
-        found = self._handed.get(path)
+        holder = path.rpartition("/")[0]
+        found = self._handed.get(holder)
         if found is None:
-            found = frozenset(p.GetPrimvarName() for p in UsdGeom.PrimvarsAPI(parent).FindInheritablePrimvars())
-            self._handed[path] = found
+            found = frozenset(p.GetPrimvarName() for p in UsdGeom.PrimvarsAPI(prim.GetParent()).FindInheritablePrimvars())
+            self._handed[holder] = found
         return found
 
 
@@ -63,7 +63,7 @@ class Stated(NamedTuple):
 class Prim:
     """A prim on its way, with what was asked already."""
 
-    __slots__ = ("_handed", "_owned", "kind", "names", "path", "prim")
+    __slots__ = ("_inherited", "_owned", "has_children", "kind", "names", "path", "prim")
 
     def __init__(self, owned: Owned, prim: Usd.Prim) -> None:
         self.prim = prim
@@ -71,7 +71,13 @@ class Prim:
         self.kind = str(prim.GetTypeName())
         self.names = owned.names(prim, self.kind)
         self._owned = owned
-        self._handed: Container[str] | None = None
+        self._inherited: Container[str] | None = None
+        self.has_children = prim.IsInstanceProxy() or bool(prim.GetAllChildrenNames())
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether nothing is applied to it that makes it more than its type says, such as a light."""
+        return self.names is not _EVERYTHING
 
     def value(self, name: str, time: Usd.TimeCode, otherwise: Any = None) -> Any:
         """The value of an attribute; `otherwise`, which is that of the schema, where there is no opinion."""
@@ -82,9 +88,9 @@ class Prim:
         name = name.removeprefix("primvars:")
         full = f"primvars:{name}"
         if full not in self.names:
-            if self._handed is None:
-                self._handed = self._owned.handed(self.prim.GetParent())
-            if name not in self._handed:
+            if self._inherited is None:
+                self._inherited = self._owned.inherited(self.prim, self.path)
+            if name not in self._inherited:
                 return None
         elif self.names is not _EVERYTHING and f"{full}:indices" not in self.names:
             attribute = self.prim.GetAttribute(full)

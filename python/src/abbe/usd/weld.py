@@ -39,8 +39,10 @@ def blocks(count: int) -> list[slice]:
 def _bits(values: Array) -> Array:
     """Rows of single precision as bits: pairs as one number each."""
     rows = np.ascontiguousarray(values, np.float32)
-    if rows.shape[1] == 2 and rows.ctypes.data % 8 == 0:
-        return rows.view(np.uint64)
+    if rows.shape[1] == 2:
+        pairs = rows.view(np.uint64)
+        if pairs.flags.aligned:
+            return pairs
     return rows.view(np.uint32)
 
 
@@ -79,7 +81,7 @@ class Comparison:
 
 def _any_column(differ: Array) -> Array | None:
     """A row's answer from those of its numbers; None where none is true."""
-    if not differ.any():
+    if not np.logical_or.reduce(differ, axis=None):
         return None
     mask = differ[:, 0]
     for i in range(1, differ.shape[1]):
