@@ -215,7 +215,7 @@ class Encoder:
             self.has_arrays = True
             return value.tokens()
         if isinstance(value, os.PathLike):
-            value = os.fspath(value)
+            return [Path(os.fspath(value))]
         if isinstance(value, str):
             if kind == "file":
                 return [Path(value)]
@@ -229,6 +229,9 @@ class Encoder:
         if isinstance(value, Sequence):
             if not value:
                 raise ValueError("a value is empty")
+            takes_texture = field and (field.get("texturable") or field.get("kind") == "texture")
+            if takes_texture and isinstance(value[0], str) and value[0] in TYPES["texture"] and value[0] not in self._names:
+                return [value[0], *argument_tokens(self, "texture", value[0], value[1:])]
             first = field if kind in ("file", "text") else None
             return [token for i, one in enumerate(value) for token in self.tokens(first if i == 0 else None, one)]
         if isinstance(value, Mapping):
@@ -239,8 +242,10 @@ class Encoder:
         kind = self._kind_of(field, value.type)
         tokens: list[Token] = [name_word(value.type)]
         named = kind is None or value.type not in TYPES[kind]
-        for argument in value.arguments:
-            tokens += self.tokens(None, argument)
+        if kind is None or named:
+            tokens += [token for argument in value.arguments for token in self.tokens(None, argument)]
+        else:
+            tokens += argument_tokens(self, kind, value.type, value.arguments)
         for key, one in value.keys.items():
             tokens.append(f"{name_word(language_name(key))}={self._key_value(one)}")
         if named and value.properties:

@@ -65,12 +65,16 @@ class Search(InFolder):
         scene.check()
 
     def test_what_a_program_names_itself_may_lie_anywhere(self) -> None:
-        scene = abbe.Scene()
-        scene.camera(from_=(0, 0, 4), look_at=(0, 0, 0))
-        scene.light("daylight")
-        scene.texture("bark", "image", self.library / "bark.png")
-        scene.shape("sphere", material=abbe.node("diffuse", reflectance="bark"))
-        self.assertEqual(scene.render(samples=1, size=(8, 8)).rgb().shape, (8, 8, 3))
+        file = self.library / "bark.png"
+        seen = set()
+        for reflectance in ("bark", abbe.node("image", str(file)), abbe.node("image", file), ("image", file), ("image", str(file))):
+            scene = abbe.Scene()
+            scene.camera(from_=(0, 0, 4), look_at=(0, 0, 0))
+            scene.light("daylight")
+            scene.texture("bark", "image", str(file))
+            scene.shape("sphere", material=abbe.node("diffuse", reflectance=reflectance))
+            seen.add(scene.render(samples=1, size=(8, 8)).rgb().tobytes())
+        self.assertEqual(len(seen), 1)
 
     def test_but_what_that_file_names_may_not(self) -> None:
         """An include that the program names reads its own folder, and not whatever its text says."""
