@@ -9,13 +9,13 @@ import os
 import re
 import shlex
 import subprocess
-from unittest import mock
 from pathlib import Path
+from unittest import mock
 
+import numpy as np
 from support import HEADER, LOOKING_DOWN, StageTest, program
 from test_materials import write_png
 
-import numpy as np
 from abbe import usd
 from abbe.usd import command
 
@@ -23,7 +23,9 @@ from abbe.usd import command
 def textured(picture: str) -> str:
     """A square with a picture."""
     return (
-        'def Xform "World" {\n    def DomeLight "sky" { }\n' + LOOKING_DOWN + f"""
+        'def Xform "World" {\n    def DomeLight "sky" { }\n'
+        + LOOKING_DOWN
+        + f"""
     def Mesh "floor" (prepend apiSchemas = ["MaterialBindingAPI"]) {{
         int[] faceVertexCounts = [4]
         int[] faceVertexIndices = [0, 1, 2, 3]

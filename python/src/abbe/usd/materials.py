@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
 
 import numpy as np
 from pxr import Usd, UsdShade
 
 from . import nodes  # the readers of nodes enter themselves
 from .context import Context, as_float
-from .own import Prim, Stated
 from .network import Network, node_kind
+from .own import Prim, Stated
 from .report import Fate
 from .scene_text import Node
 from .surfaces import WRITERS, SurfaceWriter

@@ -12,8 +12,8 @@ from pxr import Usd, UsdGeom, UsdShade
 from .cages import cage_node
 from .context import Context, Place, write_transform
 from .materials import Look
-from .own import Prim
 from .mesh_data import BadMesh, Surface, part, read_surface, write_polygons
+from .own import Prim
 from .report import Fate
 from .scene_text import Node
 

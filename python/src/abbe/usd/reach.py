@@ -27,7 +27,7 @@ def foreign_files(nodes: Iterable[Node]) -> Iterator[Path]:
 
 
 def folders_to_state(files: Iterable[Path], scene: Path, stage: Path) -> list[str]:
-    """The folders that a scene at `scene` reads and may not by itself: the project of the stage, where it holds what is read, else that of the file."""
+    """Folders that a scene at `scene` reads and may not by itself: the project of the stage, where that holds the file, else the file's own."""
     environment = [Path(os.path.realpath(one)) for one in os.environ.get("ABBE_PATH", "").split(":") if one]
     allowed = [project_of(scene.parent), *environment]
     of_stage = project_of(stage.parent)
