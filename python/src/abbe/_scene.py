@@ -269,6 +269,7 @@ class Scene(Definitions):
 
         progress: called a few times a second, on this thread, with a dict: done (0 to 1), samples, of_samples, noise, elapsed and left (s),
         paths_per_second. What it raises ends the render, as Ctrl-C does: within a second, and nothing of it runs any more.
+        Ctrl-C while the scene is read and built, which nothing ends, leaves that to a thread of its own; it writes nothing.
 
         Other threads of Python go on meanwhile. Renders of one process take turns.
         Raises SceneError with all diagnostics; warnings are in `image.warnings`.
