@@ -36,6 +36,7 @@ class SceneBuilder final : public schema::Resolver {
         : context_(tree, types, options, diagnostics, built, *this, reuse) {}
 
     void build();
+    void note(InstancePlaces& places) { context_.instancePlaces = &places; }
     void buildCameraAlone() {
         buildSettings();
         cameras_.build();
@@ -259,6 +260,18 @@ BuiltScene buildScene(const schema::SceneTree& tree, const schema::TypeTable& ty
     else
         addWithIncluders(tree, found, known, diagnostics);
     return built;
+}
+
+InstancePlaces findInstancePlaces(const schema::SceneTree& tree, const schema::TypeTable& types) {
+    InstancePlaces places;
+    BuildOptions options;
+    options.geometry = false;
+    Diagnostics repeated; // what is wrong has been told by who built the scene before
+    BuiltScene built;
+    SceneBuilder builder(tree, types, options, repeated, built, nullptr);
+    builder.note(places);
+    builder.build();
+    return places;
 }
 
 LoneCamera buildCamera(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,

@@ -5,6 +5,7 @@
 #include "base/diagnostic.h"
 #include "base/enclosure.h"
 #include "scene/build.h"
+#include "scene/instance_places.h"
 #include "scene/reuse.h"
 #include "schema/scene_tree.h"
 #include "spectrum/color_space.h"
@@ -63,7 +64,8 @@ class BuildContext {
     const BuildOptions& options;
     Diagnostics& diagnostics;
     BuiltScene& built;
-    SceneReuse* const reuse; // null: nothing is taken over from other buildings
+    SceneReuse* const reuse;                  // null: nothing is taken over from other buildings
+    InstancePlaces* instancePlaces = nullptr; // where to note where instances stand; null: nobody asks
     CurveLibrary curves;
 
     Vec3d up() const { return tree.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0}; }

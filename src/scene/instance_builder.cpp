@@ -127,8 +127,12 @@ std::vector<Placement> InstanceBuilder::placements(const Definition& d, const In
     }
     if (!params->points.value.empty()) context_.noteFile(params->points.value);
     if (params->count) result.reserve(static_cast<std::size_t>(*params->count));
-    visitPlaces(*params, context, context_.diagnostics,
-                [&](std::uint64_t, const Transform& place) { return add(place.then(outwards)); });
+    std::vector<Transform>* const noted = context_.instancePlaces ? &(*context_.instancePlaces)[&d] : nullptr;
+    if (noted) noted->clear();
+    visitPlaces(*params, context, context_.diagnostics, [&](std::uint64_t, const Transform& place) {
+        if (noted) noted->push_back(place);
+        return add(place.then(outwards));
+    });
     return result;
 }
 

@@ -17,7 +17,7 @@ constexpr ExportFormat kExportFormats[] = {
     {"mitsuba", "Mitsuba", ".xml", exportMitsuba},
     {"pbrt", "pbrt", ".pbrt", exportPbrt},
     {"gltf", "glTF", ".glb", exportGltf},
-    {"usda", "OpenUSD", ".usda", exportUsd},
+    {"usda", "OpenUSD", ".usda", exportUsd, true},
 };
 
 } // namespace

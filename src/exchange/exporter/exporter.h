@@ -18,6 +18,7 @@ struct ExportFormat {
     std::string_view title;     // "Mitsuba", for messages
     std::string_view extension; // ".xml"
     std::string (*write)(Export&);
+    bool instancers = false; // it has many instances of one thing as one: the scene's are wanted whole (StatedScene)
 };
 
 std::span<const ExportFormat> exportFormats();

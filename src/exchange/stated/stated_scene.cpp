@@ -141,6 +141,19 @@ StatedSpectrum StatedThing::spectrum(std::string_view property) const {
     return {static_cast<const StatedCurve*>(t->curve), t->texture ? thingOf(t->texture) : nullptr};
 }
 
+std::vector<std::pair<double, StatedSpectrum>> StatedThing::stops(std::string_view property) const {
+    std::vector<std::pair<double, StatedSpectrum>> list;
+    if (const auto* const all = find(property))
+        for (const BoundValue& v : *all)
+            if (const auto* stop = std::get_if<schema::SpectrumStop>(&v)) {
+                const schema::TexturedSpectrum& value = stop->value;
+                list.push_back(
+                    {stop->position,
+                     {static_cast<const StatedCurve*>(value.curve), value.texture ? thingOf(value.texture) : nullptr}});
+            }
+    return list;
+}
+
 const StatedThing* StatedThing::reference(std::string_view property) const {
     const auto* const all = find(property);
     if (!all) return nullptr;
@@ -171,6 +184,31 @@ bool StatedThing::usesCoordinates(bool alsoStretched, int depth) const {
     return false;
 }
 
+bool StatedThing::usesPosition(int depth) const {
+    constexpr int kDeepest = 16;
+    if (depth > kDeepest) return false;
+    const auto inner = [&](const StatedThing* to) { return to && to->usesPosition(depth + 1); };
+    if (kind == schema::Kind::texture && (type == "noise" || type == "triplanar")) return true;
+    for (const auto& [property, all] : values_)
+        for (const BoundValue& v : all) {
+            const auto* const choice = std::get_if<schema::Choice>(&v);
+            if (property == "over" && choice && (choice->word == "x" || choice->word == "y" || choice->word == "z"))
+                return true;
+            const auto* const q = std::get_if<schema::Quantity>(&v);
+            if (type == "checker" && q && q->dimension == schema::Dimension::length) return true;
+            const auto* const spectrum = std::get_if<schema::TexturedSpectrum>(&v);
+            if (spectrum && spectrum->texture && inner(thingOf(spectrum->texture))) return true;
+            const auto* const number = std::get_if<schema::TexturedNumber>(&v);
+            if (number && number->texture && inner(thingOf(number->texture))) return true;
+            const auto* const stop = std::get_if<schema::SpectrumStop>(&v);
+            if (stop && stop->value.texture && inner(thingOf(stop->value.texture))) return true;
+            if (const auto* to = std::get_if<schema::Reference>(&v); to && inner(scene_->thing(*to))) return true;
+            const auto* const weighted = std::get_if<schema::WeightedReference>(&v);
+            if (weighted && inner(scene_->thing(weighted->reference))) return true;
+        }
+    return false;
+}
+
 std::vector<StatedThing::Unused> StatedThing::takeUnused() const {
     std::vector<Unused> list;
     for (const auto& [property, where] : given_)
@@ -178,8 +216,10 @@ std::vector<StatedThing::Unused> StatedThing::takeUnused() const {
     return list;
 }
 
-StatedScene::StatedScene(const schema::SceneTree& tree, const schema::TypeTable& types, MakeCurve makeCurve)
-    : tree_(tree), table_(tableByName(types)), makeCurve_(std::move(makeCurve)), zUp_(tree.header.zUp) {
+StatedScene::StatedScene(const schema::SceneTree& tree, const schema::TypeTable& types, MakeCurve makeCurve,
+                         FindPlaces findPlaces)
+    : tree_(tree), table_(tableByName(types)), makeCurve_(std::move(makeCurve)), findPlaces_(std::move(findPlaces)),
+      zUp_(tree.header.zUp) {
     schema::SpectrumValue d65;
     d65.form = schema::SpectrumValue::Form::illuminant;
     d65.text = "D65";
@@ -272,7 +312,7 @@ bool StatedScene::placeGrid(const Placed& all, std::vector<Placed>& out) {
 
 void StatedScene::place(const Definition& d, const Placed& outer, const std::vector<std::string>& visible,
                         std::vector<Placed>& out) {
-    Placed placed{nullptr, {}, {}, false, {}, {}, visible, d.span};
+    Placed placed{nullptr, {}, {}, false, {}, {}, visible, d.span, nullptr};
     const KeyedTransform own = transformOf(d);
     placed.toWorld = own.at(time_).then(outer.toWorld);
     placed.motion = Motion().then(own).then(outer.motion);
@@ -289,7 +329,10 @@ void StatedScene::place(const Definition& d, const Placed& outer, const std::vec
         placed.object = d.target;
     else
         placed.thing = &bound(d);
-    if (d.kind == schema::Kind::instances && placeGrid(placed, out)) return;
+    if (d.kind == schema::Kind::instances) {
+        if (!findPlaces_ && placeGrid(placed, out)) return;
+        placed.definition = &d;
+    }
     if (placed.thing) {
         placed.thing->find("transform");
         placed.thing->find("visible-to");

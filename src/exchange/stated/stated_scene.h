@@ -77,6 +77,8 @@ class StatedThing {
     std::string word(std::string_view property) const; // of choices, texts and files (their path); `on` and `off`
     StatedNumber textured(std::string_view property, double otherwise) const;
     StatedSpectrum spectrum(std::string_view property) const;
+    // Values at positions, rising: `stop 0.5 rgb 1 0 0`.
+    std::vector<std::pair<double, StatedSpectrum>> stops(std::string_view property) const;
     const StatedThing* reference(std::string_view property) const;
     template <typename T> const T* value(std::string_view property) const {
         const auto* const all = find(property);
@@ -88,6 +90,9 @@ class StatedThing {
     // Whether texture coordinates count: a texture (or a highlight that is stretched along them), in it or what it
     // refers to. Nothing is used by asking.
     bool usesCoordinates(bool alsoStretched, int depth = 0) const;
+
+    // Whether where a point is counts: a texture in the space of the shape, in it or what it refers to. Likewise.
+    bool usesPosition(int depth = 0) const;
 
     struct Unused {
         std::string property;
@@ -115,15 +120,22 @@ struct Placed {
     std::vector<double> times;          // s, of its keys, rising
     std::vector<std::string> visibleTo; // empty: everything
     Span span;
+    const schema::Definition* definition = nullptr; // of `instances`, for StatedScene::places()
 };
 
 // Makes the curve of a value; null after a diagnostic.
 using MakeCurve = std::function<const Curve*(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&)>;
 
+// Where a definition `instances` puts its object, each place without the definition's own transform; null where that is
+// not known. What is returned lives as long as the scene.
+using FindPlaces = std::function<const std::vector<Transform>*(const schema::Definition&)>;
+
 class StatedScene final : private schema::Resolver {
   public:
     // Requires a tree that can be built without errors. The tree and the table outlive this; so do the curves.
-    StatedScene(const schema::SceneTree&, const schema::TypeTable&, MakeCurve);
+    // With `FindPlaces` all `instances` stay one thing each, whose places() can be asked for. Without it those of a
+    // grid become instances by themselves, and of others nobody knows the places.
+    StatedScene(const schema::SceneTree&, const schema::TypeTable&, MakeCurve, FindPlaces = {});
     ~StatedScene() override;
 
     const StatedThing* film() const { return film_; }
@@ -131,6 +143,10 @@ class StatedScene final : private schema::Resolver {
     const std::vector<const StatedThing*>& cameras() const { return cameras_; }
     const std::vector<Placed>& placed() const { return placed_; }
     const std::vector<Placed>& object(const std::string& name) const;
+    // Of `instances` that stay one thing; null where they are not known.
+    const std::vector<Transform>* places(const Placed& instances) const {
+        return findPlaces_ && instances.definition ? findPlaces_(*instances.definition) : nullptr;
+    }
     const StatedThing* thing(schema::Reference r) const { return r.valid() ? &things_[r.index] : nullptr; }
     const StatedThing* atmosphere() const { return atmosphere_; } // its medium, or null
     Vec3d up() const { return zUp_ ? Vec3d(0, 0, 1) : Vec3d(0, 1, 0); }
@@ -158,6 +174,7 @@ class StatedScene final : private schema::Resolver {
     const schema::SceneTree& tree_;
     schema::TypeTable table_; // of types that store values by name
     MakeCurve makeCurve_;
+    FindPlaces findPlaces_;
     std::deque<StatedThing> things_;
     std::map<std::pair<schema::Kind, std::string>, const StatedThing*> named_;
     std::deque<StatedCurve> curves_;

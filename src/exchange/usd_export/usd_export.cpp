@@ -18,46 +18,6 @@ double turnBetween(const Transform& a, const Transform& b) {
     return 2 * std::acos(std::min(1.0, c));
 }
 
-void writePlaced(const Placed&, UsdPrim& parent, UsdWriter&);
-
-// The path of an object's prim, below one that is not rendered by itself.
-std::string prototypeOf(const std::string& object, UsdWriter& w) {
-    const auto [at, fresh] = w.prototypes.emplace(object, std::string());
-    if (!fresh) return at->second;
-    UsdPrim prim("Xform", w.take(object, "object"));
-    at->second = "/Objects/" + prim.name();
-    const std::string path = at->second;
-    for (const Placed& part : w.out.scene.object(object)) writePlaced(part, prim, w);
-    w.objects.add(std::move(prim));
-    return path;
-}
-
-void writeInstance(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
-    const std::string path = prototypeOf(placed.object, w);
-    UsdPrim prim("Xform", w.take(placed.object, "instance"));
-    prim.metadata("instanceable = true").metadata(fmt::format("prepend references = <{}>", path));
-    usdPlace(prim, placed, {}, w);
-    parent.add(std::move(w.withRemarks(prim)));
-}
-
-void writePlaced(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
-    if (!placed.visibleTo.empty()) w.out.leftOut(placed.span, "`visible-to`", "every ray sees everything in USD");
-    if (!placed.thing) return writeInstance(placed, parent, w);
-    const StatedThing& thing = *placed.thing;
-    if (thing.kind == schema::Kind::light) {
-        usdWriteLight(placed, parent, w);
-    } else if (thing.kind == schema::Kind::volume) {
-        usdWriteVolume(placed, parent, w);
-    } else if (thing.kind == schema::Kind::instances) {
-        w.out.leftOut(thing.span, "`instances` of points or scattered ones",
-                      "they are not written; those of a grid are");
-        Export::ignore(thing, {"points", "scatter", "over", "area", "seed", "turn", "scale", "align", "spacing"});
-    } else {
-        usdWriteShape(placed, parent, w);
-    }
-    w.out.leaveOutUnused(thing);
-}
-
 std::string headerText(const UsdWriter& w) {
     const StatedScene& scene = w.out.scene;
     const double start = scene.cameras().empty() ? 0 : scene.cameras()[0]->number("time", 0);
@@ -73,6 +33,22 @@ std::string headerText(const UsdWriter& w) {
 }
 
 } // namespace
+
+void usdWritePlaced(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
+    if (!placed.visibleTo.empty()) w.out.leftOut(placed.span, "`visible-to`", "every ray sees everything in USD");
+    if (!placed.thing) return usdWriteInstance(placed, parent, w);
+    const StatedThing& thing = *placed.thing;
+    if (thing.kind == schema::Kind::light) {
+        usdWriteLight(placed, parent, w);
+    } else if (thing.kind == schema::Kind::volume) {
+        usdWriteVolume(placed, parent, w);
+    } else if (thing.kind == schema::Kind::instances) {
+        usdWriteInstances(placed, parent, w);
+    } else {
+        usdWriteShape(placed, parent, w);
+    }
+    w.out.leaveOutUnused(thing);
+}
 
 std::string UsdWriter::take(std::string_view wish, std::string_view fallback) {
     std::string name;
@@ -128,7 +104,7 @@ std::string exportUsd(Export& to) {
         const std::string path = usdWriteCamera(*one, w.world, w);
         if (camera.empty()) camera = path;
     }
-    for (const Placed& placed : to.scene.placed()) writePlaced(placed, w.world, w);
+    for (const Placed& placed : to.scene.placed()) usdWritePlaced(placed, w.world, w);
     if (to.scene.atmosphere()) to.leftOut(to.scene.atmosphere()->span, "`atmosphere`", "media of USD are volumes");
     w.withRemarks(w.world);
     const UsdPrim settings = usdSettings(camera, w);

@@ -52,6 +52,32 @@ void writeDisk(UsdPrim& prim, const Placed& placed, const StatedThing& light, Us
     usdPlace(prim, placed, toAxis(light.vector("center").value_or(Vec3d()), normal), w);
 }
 
+const StatedThing* textureOf(const StatedThing& light, UsdWriter& w) {
+    const StatedThing* const texture = light.reference("texture");
+    if (texture && light.has("power"))
+        w.out.approximated(light.span, "the `power` of a light with a texture", "it is what it would be without it");
+    return texture ? texture : light.spectrum("radiance").texture;
+}
+
+// What lights of UsdLux show: a picture as its file says, over all of them once.
+bool isLightPicture(const StatedThing& texture) {
+    const auto* const file = texture.type == "image" ? texture.value<schema::Text>("file") : nullptr;
+    return file && file->keys.empty() && texture.word("take") != "alpha" && texture.word("wrap") != "black" &&
+           file->value.find("<UDIM>") == std::string::npos;
+}
+
+// A light of another shape or with another texture: a black surface that shows it.
+std::optional<UsdPrim> glowing(const Placed& placed, const StatedThing& texture,
+                               const std::optional<StatedLight>& stated, UsdWriter& w) {
+    std::optional<UsdPrim> prim = usdMesh(placed, w);
+    if (!prim) return prim;
+    const bool own = !stated || placed.thing->spectrum("radiance").texture; // the texture says how bright it is
+    const Vec3d rgb = own ? Vec3d(1, 1, 1) : rgbOf(*stated->curve, w.out.scene.daylight());
+    const double most = std::max(maxComponent(rgb), 1e-30);
+    usdBind(*prim, usdGlow(texture, kUnitLuminance * (own ? 1 : stated->scale * most), rgb / most, w));
+    return prim;
+}
+
 std::optional<UsdPrim> areaLight(const Placed& placed, UsdWriter& w) {
     const StatedThing& light = *placed.thing;
     double area = 0;
@@ -67,12 +93,15 @@ std::optional<UsdPrim> areaLight(const Placed& placed, UsdWriter& w) {
         area = 4 * kPiD * r * r;
     }
     const auto stated = statedLight(light, {.power = kPiD * area, .units = exactUnits()}, w.out.scene);
+    const StatedThing* const texture = textureOf(light, w);
+    const bool isPicture = texture && isLightPicture(*texture);
+    if (texture && !(light.type == "quad" && isPicture && isParallelogram(quadCorners(light))))
+        return glowing(placed, *texture, stated, w);
     const auto corners = light.type == "quad" ? quadCorners(light) : std::vector<Vec3d>();
     std::optional<UsdPrim> prim;
     if (light.type == "quad" && isParallelogram(corners)) {
         writeRect(prim.emplace("RectLight", w.take(light.name, "quad")), placed, corners, w);
-        if (const StatedThing* texture = light.reference("texture"))
-            w.out.leftOut(texture->span, "the texture of a light", "it is not written");
+        if (texture) prim->set("asset inputs:texture:file", usdFile(w.out.files.refer(texture->word("file"))));
     } else if (light.type == "sphere") {
         writeSphere(prim.emplace("SphereLight", w.take(light.name, "sphere")), placed, light, w);
     } else if (light.type == "disk") {

@@ -8,19 +8,6 @@
 
 namespace abbe::exchange {
 
-namespace {
-
-constexpr int kTextureLevels = 16; // textures of textures
-
-// What `space=` says, as MaterialX and usd-core name spaces.
-std::string_view spaceOf(const schema::Text& file) {
-    for (const auto& [key, value] : file.keys)
-        if (key == "space") return value == "data" ? "raw" : std::string_view(value);
-    return {};
-}
-
-} // namespace
-
 UsdLook::UsdLook(std::string name, UsdWriter& writer)
     : w(writer), name_(std::move(name)), surface_("Shader", "surface") {
     surface_.set("uniform token info:id", "\"ND_open_pbr_surface_surfaceshader\"");
@@ -40,7 +27,7 @@ void UsdLook::flag(std::string_view parameter) { surface_.set(fmt::format("bool 
 
 void UsdLook::number(std::string_view parameter, const StatedNumber& stated) {
     if (!stated.texture) return constant(parameter, stated.value);
-    if (const std::string source = textureNode(*stated.texture, false); !source.empty())
+    if (const std::string source = textureNode(*stated.texture, {false}); !source.empty())
         connect(parameter, false, source);
     else
         constant(parameter, 0.5);
@@ -50,7 +37,7 @@ void UsdLook::number(std::string_view parameter, const StatedNumber& stated) {
 void UsdLook::color(std::string_view parameter, const StatedSpectrum& stated) {
     if (stated.curve) return constant(parameter, rgbOf(*stated.curve, w.out.scene.daylight()));
     if (!stated.texture) return;
-    if (const std::string source = textureNode(*stated.texture, true); !source.empty())
+    if (const std::string source = textureNode(*stated.texture, {true}); !source.empty())
         connect(parameter, true, source);
     else
         constant(parameter, Vec3d(0.5, 0.5, 0.5));
@@ -88,6 +75,49 @@ void UsdLook::normal(const StatedThing* texture, double strength) {
     surface_.set("vector3f inputs:geometry_normal.connect", fmt::format("<{}/{}.outputs:out>", path(), map.name()));
 }
 
+// Heights are the shape's there as here, and a map of directions is along dPdu, dPdv and the normal.
+void UsdLook::displacement(const StatedThing& shape) {
+    const double length = shape.number("displacement", 0);
+    const StatedThing* const map = shape.reference("displacement.map");
+    const bool vector = shape.word("displacement.kind") == "vector";
+    const double middle = shape.number("displacement.midpoint", vector ? 0 : 0.5);
+    if (!map || length == 0) return;
+    if (vector && (shape.word("displacement.space") == "object" || map->type != "image" || middle != 0)) {
+        w.out.leftOut(shape.span, "`displacement` by vectors in the space of the object, or of no plain picture",
+                      "MaterialX moves along the tangents");
+        return;
+    }
+    std::string source;
+    if (vector) {
+        w.out.approximated(shape.span, "`displacement` by vectors",
+                           "MaterialX moves along dPdu and dPdv, whatever their length and angle");
+        source = imageNode(*map, "vector3", {});
+    } else if (source = textureNode(*map, {false}); !source.empty() && middle != 0) {
+        source = node("ND_subtract_float", "height",
+                      {{"float inputs:in1", source}, {"float inputs:in2", usdFloat(middle)}}, "float");
+    }
+    if (source.empty()) return; // has been told
+    displacement_ = node(vector ? "ND_displacement_vector3" : "ND_displacement_float", "displacement",
+                         {{vector ? "vector3f inputs:displacement" : "float inputs:displacement", source},
+                          {"float inputs:scale", usdFloat(length)}},
+                         "token");
+    if (!vector && map->type == "image") heights_ = {map, length, -length * middle};
+}
+
+void UsdLook::emission(const StatedThing& texture, double nits, Vec3d rgb) {
+    constant("base_weight", 0);
+    constant("specular_weight", 0);
+    std::string source = textureNode(texture, {true});
+    if (!source.empty() && length(rgb - Vec3d(1, 1, 1)) > 1e-9)
+        source = node("ND_multiply_color3", "tinted",
+                      {{"color3f inputs:in1", source}, {"color3f inputs:in2", usdFloats(rgb)}}, "color3f");
+    constant("emission_luminance", nits);
+    if (source.empty())
+        constant("emission_color", rgb);
+    else
+        connect("emission_color", true, source);
+}
+
 Vec3d UsdLook::reflected(const std::function<double(double)>& curve) const {
     const SampledCurve sampled(curve);
     schema::SpectrumValue stated;
@@ -115,88 +145,41 @@ UsdPrim& UsdLook::node(std::string_view id, const std::string& name) {
     return prim;
 }
 
+std::string UsdLook::node(std::string_view id, const std::string& name, const std::vector<Input>& inputs,
+                          std::string_view type) {
+    UsdPrim& prim = node(id, name);
+    for (const Input& input : inputs)
+        prim.set(input.declaration + (input.value.starts_with('<') ? ".connect" : ""), input.value);
+    prim.declare(fmt::format("{} outputs:out", type));
+    return fmt::format("<{}/{}.outputs:out>", path(), prim.name());
+}
+
+std::string UsdLook::outputOf(const std::string& source, std::string_view output) {
+    return fmt::format("{}{}>", source.substr(0, source.rfind(':') + 1), output);
+}
+
 void UsdLook::connect(std::string_view parameter, bool isColor, const std::string& source) {
     surface_.set(fmt::format("{} inputs:{}.connect", isColor ? "color3f" : "float", parameter), source);
 }
 
-std::string UsdLook::imageNode(const StatedThing& texture, std::string_view type, const std::string& coordinates) {
-    const auto* const file = texture.value<schema::Text>("file");
-    if (!file) return {};
-    UsdPrim& image = node(fmt::format("ND_image_{}", type), "image");
-    const std::string_view space = spaceOf(*file);
-    texture.has("space");
-    const std::string path = usdFile(w.out.files.refer(file->value));
-    if (space.empty())
-        image.set("asset inputs:file", path);
-    else
-        image.set("asset inputs:file", path, fmt::format("colorSpace = \"{}\"", space));
-    const std::string wrap = texture.word("wrap");
-    if (wrap == "clamp" || wrap == "mirror" || wrap == "black")
-        for (const char axis : {'u', 'v'})
-            image.set(fmt::format("string inputs:{}addressmode", axis),
-                      fmt::format("\"{}\"", wrap == "black" ? "constant" : wrap));
-    if (!coordinates.empty()) image.set("float2 inputs:texcoord.connect", coordinates);
-    const std::string_view theirs = type == "color3" ? "color3f" : type == "vector3" ? "float3" : "float";
-    image.declare(fmt::format("{} outputs:out", theirs));
-    return fmt::format("<{}/{}.outputs:out>", this->path(), image.name());
-}
-
-std::string UsdLook::placedNode(const StatedThing& texture, bool isColor, const std::string& coordinates, int depth) {
-    const StatedSpectrum inner = texture.spectrum("map");
-    if (!inner.texture || !coordinates.empty()) return {};
-    const Vec2d scale = texture.pair("scale").value_or(Vec2d(1, 1)), offset = texture.pair("offset").value_or(Vec2d());
-    UsdPrim& place = node("ND_place2d_vector2", "place");
-    // It divides by the scale and turns the picture, not the coordinates.
-    place.set("float2 inputs:scale", fmt::format("({}, {})", usdFloat(1 / scale.x), usdFloat(1 / scale.y)));
-    if (const double turn = texture.number("rotate", 0)) place.set("float inputs:rotate", usdFloat(-turn / kDegree));
-    if (offset.x != 0 || offset.y != 0)
-        place.set("float2 inputs:offset", fmt::format("({}, {})", usdFloat(-offset.x), usdFloat(-offset.y)));
-    place.declare("float2 outputs:out");
-    const std::string source = fmt::format("<{}/{}.outputs:out>", path(), place.name());
-    return textureNode(*inner.texture, isColor, source, depth + 1);
-}
-
-std::string UsdLook::productNode(const StatedThing& texture, bool isColor, const std::string& coordinates, int depth) {
-    const char* const type = isColor ? "color3f" : "float";
-    std::vector<std::pair<std::string, std::string>> inputs;
-    for (const char* side : {"first", "second"}) {
-        const StatedSpectrum stated = texture.spectrum(side);
-        const std::string input = fmt::format("{} inputs:in{}", type, inputs.size() + 1);
-        if (stated.texture) {
-            const std::string source = textureNode(*stated.texture, isColor, coordinates, depth + 1);
-            if (source.empty()) return {};
-            inputs.emplace_back(input + ".connect", source);
-        } else {
-            const Vec3d rgb = stated.curve ? rgbOf(*stated.curve, w.out.scene.daylight()) : Vec3d(1, 1, 1);
-            inputs.emplace_back(input, isColor ? usdFloats(rgb) : usdFloat(rgb.y));
-        }
-    }
-    UsdPrim& product = node(isColor ? "ND_multiply_color3" : "ND_multiply_float", "product");
-    for (const auto& [declaration, value] : inputs) product.set(declaration, value);
-    product.declare(fmt::format("{} outputs:out", type));
-    return fmt::format("<{}/{}.outputs:out>", path(), product.name());
-}
-
-std::string UsdLook::textureNode(const StatedThing& texture, bool isColor, const std::string& coordinates, int depth) {
-    std::string made;
-    if (depth < kTextureLevels) {
-        if (texture.type == "image" && texture.word("take") != "alpha")
-            made = imageNode(texture, isColor ? "color3" : "float", coordinates);
-        if (texture.type == "placed") made = placedNode(texture, isColor, coordinates, depth);
-        if (texture.type == "product") made = productNode(texture, isColor, coordinates, depth);
-        if (texture.type == "attribute" && texture.word("encoding") != "srgb") {
-            UsdPrim& value = node(isColor ? "ND_geompropvalue_color3" : "ND_geompropvalue_float", "attribute");
-            const std::string name = texture.word("name");
-            value.set("string inputs:geomprop", usdText(name == "color" ? "displayColor" : name));
-            value.declare(isColor ? "color3f outputs:out" : "float outputs:out");
-            made = fmt::format("<{}/{}.outputs:out>", path(), value.name());
-        }
-    }
-    if (made.empty())
-        w.out.leftOut(texture.span, fmt::format("texture `{}`", texture.type),
-                      "it is not written as MaterialX; grey stands for it");
-    w.out.leaveOutUnused(texture);
-    return made;
+void UsdLook::writePreviewHeights(UsdPrim& material, UsdPrim& preview) {
+    const auto& height = *heights_.map->value<schema::Text>("file");
+    UsdPrim st("Shader", "preview_height_st"), texture("Shader", "preview_height");
+    st.set("uniform token info:id", "\"UsdPrimvarReader_float2\"").set("string inputs:varname", "\"st\"");
+    st.declare("float2 outputs:result");
+    const auto four = [](double v) { return fmt::format("({0}, {0}, {0}, {0})", usdFloat(v)); };
+    texture.set("uniform token info:id", "\"UsdUVTexture\"")
+        .set("asset inputs:file", usdFile(w.out.files.refer(height.value)))
+        .set("token inputs:sourceColorSpace", "\"raw\"")
+        .set("float4 inputs:scale", four(heights_.scale))
+        .set("float4 inputs:bias", four(heights_.bias));
+    texture.set("float2 inputs:st.connect", fmt::format("<{}/preview_height_st.outputs:result>", path()));
+    texture.set("token inputs:wrapS", "\"repeat\"").set("token inputs:wrapT", "\"repeat\"");
+    texture.declare("float outputs:r");
+    preview.set("float inputs:displacement.connect", fmt::format("<{}/preview_height.outputs:r>", path()));
+    preview.declare("token outputs:displacement");
+    material.set("token outputs:displacement.connect", fmt::format("<{}/preview.outputs:displacement>", path()));
+    material.add(std::move(st)).add(std::move(texture));
 }
 
 // What programs without MaterialX show: colours, metal, roughness and opacity; pictures of the base alone.
@@ -233,6 +216,7 @@ void UsdLook::writePreview(UsdPrim& material) {
     preview.set("float inputs:opacity", usdFloat(opacity * (1 - 0.9 * clear)));
     const Vec3d glow = value("emission_color", {1, 1, 1}) * value("emission_luminance", {}).x;
     if (maxComponent(glow) > 0) preview.set("color3f inputs:emissiveColor", usdFloats(glow));
+    if (heights_.map) writePreviewHeights(material, preview);
     preview.declare("token outputs:surface");
     material.set("token outputs:surface.connect", fmt::format("<{}/preview.outputs:surface>", path()));
     material.add(std::move(preview));
@@ -241,6 +225,7 @@ void UsdLook::writePreview(UsdPrim& material) {
 UsdPrim UsdLook::take() {
     UsdPrim material("Material", name_);
     material.set("token outputs:mtlx:surface.connect", fmt::format("<{}/surface.outputs:surface>", path()));
+    if (!displacement_.empty()) material.set("token outputs:mtlx:displacement.connect", displacement_);
     surface_.declare("token outputs:surface");
     material.add(std::move(surface_));
     for (UsdPrim& one : nodes_) material.add(std::move(one));

@@ -83,6 +83,11 @@ void diffuse(UsdLook& look, const StatedThing& m, const char* property) {
     if (!m.spectrum(property)) look.constant("base_color", Vec3d(0.5, 0.5, 0.5));
 }
 
+void grey(UsdLook& look) {
+    look.constant("specular_weight", 0);
+    look.constant("base_color", Vec3d(0.5, 0.5, 0.5));
+}
+
 void conductor(UsdLook& look, const StatedThing& m) {
     look.constant("base_metalness", 1);
     Vec3d rgb = look.metalColor(m, "index");
@@ -117,12 +122,50 @@ void dielectric(UsdLook& look, const StatedThing& m, bool thin) {
     }
 }
 
+// Light that wanders below the surface.
+void subsurface(UsdLook& look, const StatedThing& m) {
+    look.constant("subsurface_weight", 1);
+    look.color("subsurface_color", m.spectrum("reflectance"));
+    const StatedSpectrum path = m.spectrum("mean-free-path");
+    const double plain = m.number("mean-free-path", 0.001);
+    const Vec3d rgb = path.curve ? rgbOf(*path.curve, look.w.out.scene.daylight()) : Vec3d(plain, plain, plain);
+    look.constant("subsurface_radius", rounded(maxComponent(rgb)));
+    look.constant("subsurface_radius_scale", rgb / maxComponent(rgb));
+    if (m.has("anisotropy")) look.constant("subsurface_scatter_anisotropy", m.number("anisotropy", 0));
+    look.index("specular_ior", m, "ior", 1.4);
+    look.number("specular_roughness", m.textured("roughness", 0.3));
+    Export::ignore(m, {"boundary"});
+    look.w.out.approximated(m.span, "`subsurface`",
+                            "by the subsurface of OpenPBR, which light enters as its writer chooses");
+}
+
+// A thin sheet, whose light OpenPBR parts by one number: what is sent back of all has (1 - g) / 2 [Andersson2024].
+void diffuseTransmission(UsdLook& look, const StatedThing& m) {
+    const StatedSpectrum back = m.spectrum("reflectance"), through = m.spectrum("transmittance");
+    const auto rgb = [&](const StatedSpectrum& s) {
+        return s.curve ? rgbOf(*s.curve, look.w.out.scene.daylight()) : Vec3d(0.25, 0.25, 0.25);
+    };
+    const Vec3d r = rgb(back), t = rgb(through), all = r + t;
+    const double sum = all.x + all.y + all.z, g = sum > 0 ? (t.x + t.y + t.z - r.x - r.y - r.z) / sum : 0;
+    look.flag("geometry_thin_walled");
+    look.constant("specular_weight", 0);
+    look.constant("subsurface_weight", 1);
+    look.constant("subsurface_color", Vec3d(rounded(all.x), rounded(all.y), rounded(all.z)));
+    look.constant("subsurface_scatter_anisotropy", rounded(g));
+    if (back.texture || through.texture)
+        look.w.out.leftOut(m.span, "a texture of `diffuse-transmission`", "OpenPBR has one colour for both sides");
+    else if (const Vec3d off = t - all * ((1 + g) / 2); length(off) > 1e-6)
+        look.w.out.approximated(m.span, "`diffuse-transmission`", "in OpenPBR both sides have one colour");
+}
+
 void write(UsdLook& look, const StatedThing& m, int depth) {
     constexpr int kMostLayers = 16;
     const auto part = [&](const char* property) {
         if (const StatedThing* inner = depth < kMostLayers ? m.reference(property) : nullptr)
             write(look, *inner, depth + 1);
     };
+    if (m.type == "subsurface") return subsurface(look, m);
+    if (m.type == "diffuse-transmission") return diffuseTransmission(look, m);
     if (m.type == "openpbr") return openPbr(look, m);
     if (m.type == "diffuse") return diffuse(look, m, "reflectance");
     if (m.type == "conductor") return conductor(look, m);
@@ -156,20 +199,43 @@ void write(UsdLook& look, const StatedThing& m, int depth) {
 
 } // namespace
 
-std::string usdMaterial(const StatedThing* material, UsdWriter& w) {
-    if (!material) return {};
-    if (const auto found = w.materials.find(material); found != w.materials.end()) return found->second;
-    UsdLook look(w.take(material->name, material->type.empty() ? "material" : material->type), w);
-    write(look, *material, 0);
-    if (material->has("opacity")) look.number("geometry_opacity", material->textured("opacity", 1));
-    if (const auto* normal = material->value<schema::WeightedReference>("normal"))
-        look.normal(w.out.scene.thing(normal->reference), normal->weight);
-    Export::ignore(*material, {"priority"});
-    w.out.leaveOutUnused(*material);
+void usdWriteSurface(UsdLook& look, const StatedThing& material) { write(look, material, 0); }
+
+std::string usdMaterial(const UsdDress& dress, UsdWriter& w) {
+    if (dress == UsdDress()) return {};
+    if (const auto found = w.materials.find(dress); found != w.materials.end()) return found->second;
+    const StatedThing* const material = dress.material;
+    std::string name = material ? material->name : "";
+    const StatedThing* const made = dress.displaced ? dress.displaced : material ? nullptr : dress.interior;
+    if (made && !made->name.empty()) name = (name.empty() ? "material" : name) + "_" + made->name;
+    UsdLook look(w.take(name, !material || material->type.empty() ? "material" : material->type), w);
+    if (dress.interior)
+        usdFill(look, material, *dress.interior);
+    else if (material)
+        write(look, *material, 0);
+    else
+        grey(look);
+    if (dress.displaced) look.displacement(*dress.displaced);
+    if (material) {
+        if (material->has("opacity")) look.number("geometry_opacity", material->textured("opacity", 1));
+        if (const auto* normal = material->value<schema::WeightedReference>("normal"))
+            look.normal(w.out.scene.thing(normal->reference), normal->weight);
+        Export::ignore(*material, {"priority"});
+        w.out.leaveOutUnused(*material);
+    }
     const std::string path = look.path();
     UsdPrim prim = look.take();
     w.looks.add(std::move(w.withRemarks(prim)));
-    return w.materials[material] = path;
+    return w.materials[dress] = path;
+}
+
+std::string usdGlow(const StatedThing& texture, double nits, Vec3d color, UsdWriter& w) {
+    UsdLook look(w.take(texture.name.empty() ? "" : texture.name + "_light", "light_texture"), w);
+    look.emission(texture, nits, color);
+    std::string path = look.path();
+    UsdPrim prim = look.take();
+    w.looks.add(std::move(w.withRemarks(prim)));
+    return path;
 }
 
 void usdBind(UsdPrim& prim, const std::string& material) {

@@ -1,9 +1,10 @@
 // Surfaces: meshes, cages, simple shapes, curves and points.
 #include "exchange/stated/stated_mesh.h"
-#include "exchange/usd_export/usd_writer.h"
+#include "exchange/usd_export/usd_look.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/ply_points.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,15 @@ std::optional<UsdForm> formOf(const StatedThing& shape, UsdWriter& w) {
         form.prim.set("double height", usdNumber(shape.number("height", 1)));
         return form;
     }
+    return std::nullopt;
+}
+
+// The same, but for a shape with a texture in its own space, where the prim's is another one.
+std::optional<UsdForm> formInSpaceOf(const StatedThing& shape, UsdWriter& w) {
+    auto form = formOf(shape, w);
+    const StatedThing* const material = shape.reference("material");
+    if (!form || form->before == Transform() || !material || !material->usesPosition()) return form;
+    w.names.erase(form->prim.name());
     return std::nullopt;
 }
 
@@ -221,9 +231,7 @@ void writeCage(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
     if (!cage.holes.empty()) prim.set("int[] holeIndices", usdIndices(cage.holes));
     writeAttributes(prim, cage.attributes);
     writeDeformation(prim, shape, cage.positions.size(), w);
-    if (shape.has("displacement")) w.out.leftOut(shape.span, "`displacement`", "it is not written");
-    Export::ignore(shape, {"displacement.map", "displacement.midpoint", "displacement.kind", "displacement.space",
-                           "uv-faces", "attribute"});
+    Export::ignore(shape, {"uv-faces", "attribute"});
 }
 
 // ---- curves and points
@@ -317,17 +325,25 @@ void writeParts(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
         UsdPrim prim("Mesh", w.take(shape.name + "_" + part.group, "part"));
         writePolygons(prim, part.mesh);
         usdPlace(prim, placed, {}, w);
-        usdBind(prim, usdMaterial(part.material, w));
+        usdBind(prim, usdMaterial({.material = part.material}, w));
         parent.add(std::move(prim));
     }
 }
 
-// A surface that emits: a mesh that is a light.
+// A surface that emits: a mesh that is a light, or one of a material that shows a texture.
 void writeShining(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
     const StatedSpectrum emission = shape.spectrum("emission");
-    if (emission.texture) w.out.leftOut(shape.span, "the texture of `emission`", "the light is even");
+    if (emission.texture) return usdBind(prim, usdGlow(*emission.texture, kUnitLuminance, {1, 1, 1}, w));
     prim.api("MeshLightAPI").set("uniform token light:materialSyncMode", "\"noMaterialResponse\"");
     if (emission.curve) usdWriteAmount(prim, {emission.curve, 1}, 1, w);
+}
+
+// What a shape is made of: with it what fills and displaces it.
+UsdDress dressOf(const StatedThing& shape, const StatedThing* material) {
+    UsdDress dress{.material = material, .interior = shape.reference("interior")};
+    if (shape.type == "subdivision" && shape.has("displacement")) dress.displaced = &shape;
+    Export::ignore(shape, {"displacement.map", "displacement.midpoint", "displacement.kind", "displacement.space"});
+    return dress;
 }
 
 } // namespace
@@ -361,22 +377,25 @@ void usdWriteShape(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
     } else if (shape.type == "curves" || shape.type == "points") {
         prim = strandsPrim(shape, w);
         usdPlace(*prim, placed, {}, w);
-    } else if (auto form = light ? std::nullopt : formOf(shape, w)) {
+    } else if (auto form = light ? std::nullopt : formInSpaceOf(shape, w)) {
         usdPlace(form->prim, placed, form->before, w);
         prim = std::move(form->prim);
     } else {
         prim = usdMesh(placed, w);
     }
     const StatedThing* const material = shape.reference("material");
-    if (material && material->type == "boundary") {
-        w.out.leftOut(shape.span, "a `boundary`", "media of USD are volumes");
+    const UsdDress dress = dressOf(shape, material);
+    if (material && material->type == "boundary" && !(dress.interior && usdCanFill(*dress.interior))) {
+        w.out.leftOut(shape.span, "a `boundary`", "OpenPBR fills shapes with what is the same everywhere");
         return;
     }
+    if (light && dress.displaced)
+        w.out.leftOut(shape.span, "`displacement` of a shape that shines", "lights of USD are not displaced");
     if (prim) {
         if (light)
             writeShining(*prim, shape, w);
         else
-            usdBind(*prim, usdMaterial(material, w));
+            usdBind(*prim, usdMaterial(dress, w));
         parent.add(std::move(w.withRemarks(*prim)));
     }
     if (shape.type == "mesh" && !light) writeParts(placed, parent, w);

@@ -21,14 +21,6 @@ std::pair<Vec3d, Vec3d> coefficientsOf(const StatedThing& v, UsdWriter& w) {
     return {scattering, extinction - scattering};
 }
 
-double anisotropyOf(const StatedThing& v, UsdWriter& w) {
-    const StatedThing* const phase = v.reference("phase");
-    if (!phase || phase->type == "isotropic") return 0;
-    if (phase->type == "henyey-greenstein") return phase->number("g", phase->number("anisotropy", 0));
-    w.out.approximated(phase->span, fmt::format("phase function `{}`", phase->type), "it scatters evenly");
-    return 0;
-}
-
 std::string volumeMaterial(const StatedThing& v, UsdWriter& w) {
     const std::string name = w.take(v.name.empty() ? "" : v.name + "_medium", "medium"), path = "/Looks/" + name;
     UsdPrim material("Material", name), volume("Shader", "volume"), vdf("Shader", "vdf");
@@ -36,7 +28,7 @@ std::string volumeMaterial(const StatedThing& v, UsdWriter& w) {
     vdf.set("uniform token info:id", "\"ND_anisotropic_vdf\"");
     vdf.set("vector3f inputs:absorption", usdFloats(absorption))
         .set("vector3f inputs:scattering", usdFloats(scattering));
-    vdf.set("float inputs:anisotropy", usdFloat(anisotropyOf(v, w))).declare("token outputs:out");
+    vdf.set("float inputs:anisotropy", usdFloat(usdAnisotropy(v, w))).declare("token outputs:out");
     volume.set("uniform token info:id", "\"ND_volume\"");
     volume.set("token inputs:vdf.connect", fmt::format("<{}/vdf.outputs:out>", path)).declare("token outputs:out");
     material.set("token outputs:mtlx:volume.connect", fmt::format("<{}/volume.outputs:out>", path));
@@ -56,8 +48,7 @@ void usdWriteVolume(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
         return;
     }
     UsdPrim prim("Volume", w.take(v.name, "volume"));
-    const std::string above = parent.name() == "World" ? "/World/" : fmt::format("/Objects/{}/", parent.name());
-    const std::string path = above + prim.name(), asset = usdFile(w.out.files.refer(file->value));
+    const std::string path = usdPathIn(parent, prim), asset = usdFile(w.out.files.refer(file->value));
     for (const char* role : {"density", "temperature", "flame", "color", "velocity"}) {
         std::string grid = v.word(role);
         if (grid.empty() && std::string_view(role) == "density") grid = "density";

@@ -5,6 +5,7 @@
 #include "exchange/stated/stated_spectra.h"
 #include "exchange/usd_export/usd_text.h"
 
+#include <compare>
 #include <map>
 #include <optional>
 #include <set>
@@ -17,16 +18,25 @@ namespace abbe::exchange {
 // are frames, light is in nits, materials are OpenPBR as MaterialX nodes in UsdShade. Throws IoError.
 std::string exportUsd(Export&);
 
+// What a material of a stage is made for: there, unlike here, displacement and what fills a shape are part of it.
+struct UsdDress {
+    const StatedThing* material = nullptr;  // null: the grey of shapes without one
+    const StatedThing* displaced = nullptr; // the shape whose `displacement` it is
+    const StatedThing* interior = nullptr;  // a medium
+
+    auto operator<=>(const UsdDress&) const = default;
+};
+
 struct UsdWriter {
     explicit UsdWriter(Export& to) : out(to) {}
 
     Export& out;
     UsdPrim world{"Xform", "World"}, looks{"Scope", "Looks"}, objects{"Scope", "Objects"};
-    std::set<std::string> names;                         // of prims, all different
-    std::map<const StatedThing*, std::string> materials; // paths
-    std::map<std::string, std::string> prototypes;       // paths of objects
-    double perSecond = 24;                               // time codes
-    double last = 0;                                     // s, of all keys
+    std::set<std::string> names;                   // of prims, all different
+    std::map<UsdDress, std::string> materials;     // paths
+    std::map<std::string, std::string> prototypes; // paths of objects
+    double perSecond = 24;                         // time codes
+    double last = 0;                               // s, of all keys
 
     // A name that prims may have and none has yet.
     std::string take(std::string_view wish, std::string_view fallback);
@@ -42,6 +52,17 @@ std::vector<double> usdTimes(const Motion&, const std::vector<double>& keys, Usd
 // A transform that stands still; nothing for the identity.
 void usdPlace(UsdPrim&, const Transform&);
 
+// Whatever it is, into `parent`.
+void usdWritePlaced(const Placed&, UsdPrim& parent, UsdWriter&);
+// One instance of an object; many of one, where its places are known.
+void usdWriteInstance(const Placed&, UsdPrim& parent, UsdWriter&);
+void usdWriteInstances(const Placed&, UsdPrim& parent, UsdWriter&);
+// The path of what stands in `parent`, which is the world or an object.
+std::string usdPathIn(const UsdPrim& parent, const UsdPrim& child);
+
+// Mean cosine of a medium's phase function; one that has others is W0802.
+double usdAnisotropy(const StatedThing& medium, UsdWriter&);
+
 // A shape without light, dressed and placed, into `parent`.
 void usdWriteShape(const Placed&, UsdPrim& parent, UsdWriter&);
 void usdWriteLight(const Placed&, UsdPrim& parent, UsdWriter&);
@@ -52,9 +73,11 @@ std::optional<UsdPrim> usdMesh(const Placed&, UsdWriter&);
 void usdWriteAmount(UsdPrim&, const StatedLight&, double times, UsdWriter&);
 bool usdIsAreaLight(const StatedThing&);
 
-// The path of a material; empty where a shape has none.
-std::string usdMaterial(const StatedThing*, UsdWriter&);
+// The path of a material; empty for nothing.
+std::string usdMaterial(const UsdDress&, UsdWriter&);
 void usdBind(UsdPrim&, const std::string& material);
+// Of a black surface that shows a texture as light: nits where it is 1, times a colour.
+std::string usdGlow(const StatedThing& texture, double nits, Vec3d color, UsdWriter&);
 
 // Its path; empty where USD has none like it.
 std::string usdWriteCamera(const StatedThing&, UsdPrim& parent, UsdWriter&);

@@ -5,6 +5,7 @@
 #include "parser/parse.h"
 #include "scene/build.h"
 #include "scene/build_context.h"
+#include "scene/instance_places.h"
 #include "scene/registry.h"
 #include "spectrum/sensor.h"
 #include "support/scene_test.h"
@@ -63,9 +64,17 @@ struct Exchange {
         }
         Diagnostics said;
         CurveLibrary curves;
-        const StatedScene stated(
-            tree, types, [&](const auto& value, auto role, Diagnostics& d) { return curves.curve(value, role, d); });
         const ExportFormat& to = *findExportFormat(format);
+        const InstancePlaces places = to.instancers ? findInstancePlaces(tree, types) : InstancePlaces();
+        FindPlaces find;
+        if (to.instancers)
+            find = [&](const schema::Definition& d) {
+                const auto place = places.find(&d);
+                return place == places.end() ? nullptr : &place->second;
+            };
+        const StatedScene stated(
+            tree, types, [&](const auto& value, auto role, Diagnostics& d) { return curves.curve(value, role, d); },
+            find);
         std::string bytes = exportScene(to, stated, path(name + std::string(to.extension)), said);
         note(said, sources);
         return bytes;
@@ -386,6 +395,66 @@ TEST_CASE("export: every type and property of the language" * doctest::test_suit
             }
     }
     CHECK(tried > 300);
+}
+
+const std::string kOpen = "scene 1\ncamera { from 0 0 5; look-at 0 0 0 }\nlight sky { luminance 1000 nits }\n";
+
+TEST_CASE("export to OpenUSD: many instances are one point instancer, where a render has them") {
+    Exchange ex;
+    const std::string peg = kOpen + "object peg { shape sphere { radius 0.1 } }\n";
+    const std::string grid = ex.exported("usda", peg + "instances peg { grid 2 1 2; spacing 0.5 1 2 }");
+    CHECK(ex.codes.empty());
+    CHECK(grid.find("int[] protoIndices = [0, 0, 0, 0]") != std::string::npos);
+    CHECK(grid.find("point3f[] positions = [(-0.25, 0, -1), (0.25, 0, -1), (-0.25, 0, 1), (0.25, 0, 1)]") !=
+          std::string::npos);
+    CHECK(grid.find("orientations") == std::string::npos);
+    CHECK(grid.find("scales") == std::string::npos);
+    // A third of a turn about the diagonal takes x to y, after the stretch.
+    std::ofstream(ex.path("at.ply")) << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                        "property float z\nproperty float qx\nproperty float qy\nproperty float qz\n"
+                                        "property float qw\nproperty float sx\nproperty float sy\nproperty float sz\n"
+                                        "end_header\n1 2 3 0.5 0.5 0.5 0.5 -2 1 3\n";
+    const std::string file = ex.exported("usda", peg + "instances peg { points \"at.ply\" }");
+    CHECK(ex.codes.empty());
+    CHECK(file.find("quatf[] orientationsf = [(0.5, 0.5, 0.5, 0.5)]") != std::string::npos);
+    CHECK(file.find("float3[] scales = [(-2, 1, 3)]") != std::string::npos);
+    // As many as there are to be, upright, inside of the area.
+    const std::string some = ex.exported("usda", peg + "instances peg { scatter 3; area 2 1; turn 0 deg }");
+    CHECK(ex.codes.empty());
+    CHECK(some.find("int[] protoIndices = [0, 0, 0]") != std::string::npos);
+    CHECK(some.find("orientations") == std::string::npos);
+    // Lights in a point instancer are not drawn.
+    const std::string lamps = ex.exported("usda", kOpen + "object lamp { light sphere { radius 0.1; power 5 lm } }\n"
+                                                          "instances lamp { grid 3 1 1 }");
+    CHECK(lamps.find("PointInstancer") == std::string::npos);
+    CHECK(lamps.find("instanceable = true") != std::string::npos);
+}
+
+TEST_CASE("export to OpenUSD: what displaces and fills a shape is part of its material") {
+    Exchange ex;
+    const std::string cage =
+        "shape s subdivision { points { - 0 0 0; - 1 0 0; - 1 1 0; - 0 1 0 }; faces { - 0 1 2 3 }; "
+        "uvs { - 0 0; - 1 0; - 1 1; - 0 1 }; ";
+    const std::string bark = ex.exported("usda", kOpen + cage +
+                                                     "displacement 2 cm { map ramp { over u; stop 0 0; stop 1 1 }; "
+                                                     "midpoint 0.25 } }");
+    CHECK(ex.codes.empty());
+    CHECK(bark.find("\"ND_displacement_float\"") != std::string::npos);
+    CHECK(bark.find("float inputs:scale = 0.02") != std::string::npos);
+    CHECK(bark.find("float inputs:in2 = 0.25") != std::string::npos);
+    CHECK(bark.find("outputs:mtlx:displacement.connect = </Looks/material_s/displacement.outputs:out>") !=
+          std::string::npos);
+    // A shape that shines is a light, whose material is not asked.
+    ex.exported("usda", kOpen + cage + "emission 0.5; displacement 2 cm { map ramp { over u; stop 0 0; stop 1 1 } } }");
+    CHECK(ex.codes == "W0801");
+    // 1 / (3 + 1) m, of which light e^-1 is left, 3 of 4 parts scattered.
+    const std::string juice =
+        ex.exported("usda", kOpen + "shape sphere { radius 1; material boundary; interior homogeneous "
+                                    "{ scattering 3 per-m; absorption 1 per-m } }");
+    CHECK(ex.codes.empty());
+    CHECK(juice.find("float inputs:transmission_depth = 0.25") != std::string::npos);
+    CHECK(juice.find("color3f inputs:transmission_color = (0.36787945, 0.36787945, 0.36787945)") != std::string::npos);
+    CHECK(juice.find("color3f inputs:transmission_scatter = (0.75, 0.75, 0.75)") != std::string::npos);
 }
 
 // A property that a scene states changes what is written, or is said to be missing.

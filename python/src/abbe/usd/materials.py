@@ -14,7 +14,7 @@ from .own import Prim, Stated
 from .report import Fate
 from .scene_text import Node
 from .surfaces import WRITERS, SurfaceWriter
-from .texture import Attribute, Const, Uses, Value, write
+from .texture import Attribute, Const, Line, Uses, Value, write
 
 CONTEXTS = ["mtlx", ""]  # of surface outputs, the first one that can be read
 
@@ -109,9 +109,12 @@ class Materials:
     def _displacement(self, material: UsdShade.Material, kind: str, surface: UsdShade.Shader, uses: Uses) -> Node | None:
         """Displacement of UsdPreviewSurface: a number in units of the stage, along the normal."""
         net = Network(self.ctx, material)
-        source = material.ComputeDisplacementSource()[0]
+        found = (material.ComputeDisplacementSource(context)[0] for context in CONTEXTS)
+        source = next((one for one in found if one), None)
+        vector = False
         if source and node_kind(str(source.GetIdAttr().Get() or "")) != "UsdPreviewSurface":
             shader, factor = source, net.number(source, "scale", 1.0)
+            vector = str(source.GetIdAttr().Get() or "") == "ND_displacement_vector3"
         elif kind == "UsdPreviewSurface":
             shader, factor = source or surface, 1.0
         else:
@@ -123,6 +126,8 @@ class Materials:
             return None
         node = Node("displacement").numbers([as_float(length * factor) * self.ctx.metres_per_scene_unit]).word("m")
         write(node.child("map"), value, uses, True)
+        if vector:
+            node.child("kind").word("vector")
         node.set("midpoint", as_float(middle))
         return node
 
@@ -204,4 +209,7 @@ def _height(net: Network, shader: UsdShade.Shader) -> tuple[Value | None, float,
             scale, bias = net.raw(texture, "scale", (1.0,) * 4)[channel], net.raw(texture, "bias", (0.0,) * 4)[channel]
             if image is not None and scale != 0:
                 return dataclasses.replace(image, take=nodes.CHANNELS[found[1]]), scale, -bias / scale
-    return net.value(shader, "displacement"), 1.0, 0.0
+    value = net.value(shader, "displacement")
+    if isinstance(value, Line) and value.scale != 0:
+        return value.value, value.scale, -value.bias / value.scale
+    return value, 1.0, 0.0

@@ -16,6 +16,7 @@ from .texture import (
     Coordinates,
     Image,
     Pattern,
+    Position,
     Product,
     Ramp,
     Step,
@@ -25,6 +26,7 @@ from .texture import (
     mix,
     scaled,
     spread,
+    within,
 )
 
 CHANNELS = {"r": "red", "g": "green", "b": "blue", "a": "alpha", "x": "red", "y": "green", "z": "blue", "w": "alpha"}
@@ -280,6 +282,8 @@ def multiply(net: Network, shader: UsdShade.Shader, output: str) -> Result:
         b = Const(tuple(1 / x for x in b.values))
     if a is None or b is None:
         return b if a is None else a
+    if isinstance(a, Position) and isinstance(b, Const) and len(set(b.values)) == 1:
+        return Position("", (), a.factor * b.number)
     if isinstance(a, Const) and isinstance(b, Const):
         return _operate(a, b, lambda x, y: x * y)
     if isinstance(b, Const):
@@ -346,6 +350,11 @@ def unary(net: Network, shader: UsdShade.Shader, output: str) -> Result:
         return Const(tuple(f(x) for x in value.values))
     if not is_number(shader, output):
         return value if kind in ("clamp", "absval") else _lost(net, shader, f"{kind} of a coloured texture", value)
+    low, high = f(0.0), f(1.0)
+    if kind == "remap" and abs(f(0.5) - (low + high) / 2) <= 1e-6 * (1 + abs(low) + abs(high)):
+        return scaled(value, (high - low,), (low,), True)
+    if kind == "clamp" and f(-1e9) == 0 and f(1e9) == 1:
+        return within(value)
     return curve(value, f, straight=kind == "remap")
 
 
@@ -398,6 +407,10 @@ def take(net: Network, shader: UsdShade.Shader, value: Result, index: int) -> Re
         return Const((spread(value, index + 1)[index],))
     if isinstance(value, Image) and not value.take:
         return dataclasses.replace(value, take=["red", "green", "blue", "alpha"][index])
+    if isinstance(value, Position):
+        if value.factor * net.ctx.metres_per_scene_unit != 1:
+            net.ctx.report.approximated(shader.GetPrim(), "a coordinate that is scaled", "it is in metres")
+        return Ramp("xyz"[min(index, 2)], ((0.0, Const((0.0,))), (1.0, Const((1.0,)))))
     if isinstance(value, Coordinates):
         return Ramp("uv"[min(index, 1)], ((0.0, Const((0.0,))), (1.0, Const((1.0,)))), value)
     if index:
@@ -487,20 +500,66 @@ def checkerboard(net: Network, shader: UsdShade.Shader, output: str) -> Result:
     at, tiling = coordinates(net, shader, "texcoord"), pair(net, shader, "uvtiling", 8)
     one, two = net.value(shader, "color1", Const((1.0,) * 3)), net.value(shader, "color2", Const((0.0,) * 3))
     scaled_at = Coordinates(at.primvar, (*at.steps, Step((tiling[0], tiling[1]))))
-    even = Pattern("checker", (("even", "0"), ("odd", "1"), ("scale", "1")), scaled_at)
-    return mix(one or Const((1.0,)), two or Const((0.0,)), even)
+    odd = Pattern("checker", (("even", "0"), ("odd", "1"), ("scale", "1")), scaled_at)
+    return mix(two or Const((0.0,)), one or Const((1.0,)), odd)  # color1 has the odd ones
+
+
+@reads("position")
+def position(net: Network, shader: UsdShade.Shader, output: str) -> Result:
+    space = str(net.raw(shader, "space", "object"))
+    if space not in ("object", "model"):
+        net.ctx.report.approximated(shader.GetPrim(), f"positions in the space `{space}`", "those of the shape are taken")
+    return Position("")
+
+
+@reads("modulo")
+def modulo(net: Network, shader: UsdShade.Shader, output: str) -> Result:
+    """The parity of cubes: the sum of the whole parts of a position, modulo 2."""
+    cells = _cells(net, shader)
+    if cells is None or cells.factor <= 0:
+        net.ctx.report.left_out(shader.GetPrim(), "modulo", "its first input is passed on, unless it counts cubes")
+        return net.any(shader, "in1") if cells is None else None
+    edge = net.ctx.metres_per_scene_unit / cells.factor
+    return Pattern("checker", (("even", "0"), ("odd", "1"), ("scale", f"{edge:.9g} m")))
+
+
+def _cells(net: Network, shader: UsdShade.Shader) -> Position | None:
+    """What is rounded down and summed up before a modulo of 2."""
+    for kind, name in (("ND_modulo_float", "in1"), ("ND_dotproduct_vector3", "in1"), ("ND_floor_vector3", "in")):
+        if shader.GetIdAttr().Get() != kind:
+            return None
+        if kind == "ND_modulo_float" and net.any(shader, "in2") != Const((2.0,)):
+            return None
+        if kind == "ND_dotproduct_vector3" and net.any(shader, "in2") != Const((1.0,) * 3):
+            return None
+        found = net.source(shader, name)
+        if found is None or not found[1]:
+            return None
+        if kind == "ND_floor_vector3":
+            cells = net.any(shader, name)
+            return cells if isinstance(cells, Position) else None
+        shader = UsdShade.Shader(found[0].GetPrim())
+    return None
+
+
+# What gradient noise of MaterialX is to ours [MaterialX2023, mx_noise]: gradients √2 long times 0.982, and of length 1 times 2/√3.
+STRENGTH = 0.982 * math.sqrt(2) / (2 / math.sqrt(3))
 
 
 @reads("noise2d", "noise3d", "fractal2d", "fractal3d", "cellnoise2d", "cellnoise3d", "worleynoise2d", "worleynoise3d")
 def noise(net: Network, shader: UsdShade.Shader, output: str) -> Result:
     kind = str(shader.GetIdAttr().Get())[3:].split("_")[0]
     amplitude, pivot = net.value(shader, "amplitude", Const((1.0,))), net.value(shader, "pivot", Const((0.0,)))
-    metres = net.ctx.metres_per_scene_unit
-    properties = [("scale", f"{metres!r} m"), ("octaves", "1")]
+    metres, total = net.ctx.metres_per_scene_unit, 1.0
+    at = net.any(shader, "position")
+    if isinstance(at, Position) and at.factor > 0:
+        metres /= at.factor
+    properties = [("scale", f"{float(f'{metres:.9g}')!r} m"), ("octaves", "1")]
     if kind.startswith("fractal"):
         octaves = min(16, max(1, int(net.raw(shader, "octaves", 3))))
         lacunarity = min(8.0, max(1.0, net.number(shader, "lacunarity", 2.0)))
         gain = clamped(net.number(shader, "diminish", 0.5))
+        total = sum(gain**k for k in range(octaves))
         properties[1:] = [("octaves", str(octaves)), ("lacunarity", repr(lacunarity)), ("gain", repr(gain))]
     net.ctx.report.approximated(shader.GetPrim(), kind, "another noise of this size and amplitude, in the space of the shape")
     a = amplitude.number if isinstance(amplitude, Const) else 1.0
@@ -508,4 +567,5 @@ def noise(net: Network, shader: UsdShade.Shader, output: str) -> Result:
     value = Pattern("noise", tuple(properties))
     if kind.startswith(("cell", "worley")):
         return value
+    a *= total * (STRENGTH if "3d" in kind else 1.0)
     return scaled(value, (2 * a,), (p - a,), True)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from .context import as_float
 from .scene_text import FileRef, Node
 
+SAME = 1e-6  # of factors that went through numbers of single precision
 LUT_STOPS = 17  # of a curve that is no straight line
 
 
@@ -39,6 +40,13 @@ class Coordinates:
 
     primvar: str
     steps: tuple[Step, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class Position(Coordinates):
+    """Places in the space of the shape, in units of the stage, times a factor."""
+
+    factor: float = 1.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,7 +91,16 @@ class Pattern:
     at: Coordinates = Coordinates("")
 
 
-Value = Const | Image | Attribute | Product | Ramp | Pattern
+@dataclasses.dataclass(frozen=True)
+class Line:
+    """A number that goes beyond 0 and 1, value · scale + bias: what is made of it may lie within again."""
+
+    value: Value
+    scale: float
+    bias: float
+
+
+Value = Const | Image | Attribute | Product | Ramp | Pattern | Line
 
 
 def clamped(x: float) -> float:
@@ -109,6 +126,9 @@ def curve(value: Value, f: Callable[[float], float], straight: bool = False) -> 
     """A function of a number: exact where it is a straight line between 0 and 1."""
     if isinstance(value, Const):
         return Const(tuple(f(x) for x in value.values))
+    if isinstance(value, Line):
+        line, g = value, f
+        return curve(line.value, lambda x: g(line.scale * x + line.bias), straight)
     count = 2 if straight else LUT_STOPS
     places = [i / (count - 1) for i in range(count)]
     return Ramp(value, tuple((x, Const((clamped(f(x)),))) for x in places))
@@ -124,9 +144,14 @@ def scaled(value: Value, scale: tuple[float, ...], bias: tuple[float, ...], is_n
         return value
     if is_number:
         s, b = scale[0], bias[0]
+        if isinstance(value, Line):
+            value, s, b = value.value, s * value.scale, s * value.bias + b
+        if abs(s - 1) < SAME and abs(b) < SAME:
+            return value
         if 0 <= b <= 1 and 0 <= s + b <= 1:
             return Ramp(value, ((0.0, Const((b,))), (1.0, Const((s + b,)))))
-        return _clipped(value, s, b)
+        return Line(value, s, b)
+    value = within(value)
     if set(bias) == {0.0} and all(0 <= s <= 1 for s in scale):
         return Product(value, Const(scale))
     # colour · s + b = (1 - k) · colour · s / (1 - k) + k · b / k: a mixture with a constant.
@@ -135,6 +160,11 @@ def scaled(value: Value, scale: tuple[float, ...], bias: tuple[float, ...], is_n
         inner = Product(value, Const(tuple(s / (1 - k) for s in scale)))
         return Ramp(Const((k,)), ((0.0, inner), (1.0, Const(tuple(b / k for b in bias)))))
     return None
+
+
+def within(value: Value) -> Value:
+    """The same, ending at 0 and 1."""
+    return _clipped(value.value, value.scale, value.bias) if isinstance(value, Line) else value
 
 
 def _clipped(value: Value, s: float, b: float) -> Value:
@@ -220,6 +250,7 @@ def _write_image(node: Node, image: Image, uses: Uses, is_number: bool) -> None:
 
 def write(node: Node, value: Value, uses: Uses, is_number: bool) -> None:
     """Writes a value behind a property: numbers as they are, colours as `rgb`, textures in place."""
+    value = within(value)
     if isinstance(value, Const):
         if is_number or len(set(value.rgb())) == 1:
             node.numbers([as_float(value.values[0])])
@@ -239,7 +270,7 @@ def write(node: Node, value: Value, uses: Uses, is_number: bool) -> None:
         write(node.child("second"), value.second, uses, is_number)
     elif isinstance(value, Ramp):
         at = node
-        if isinstance(value.over, str):
+        if isinstance(value.over, str) and value.over in "uv":
             uses.coordinates(value.at)
             at = _placed(node, value.at)
         at.word("ramp")
@@ -264,6 +295,7 @@ def write(node: Node, value: Value, uses: Uses, is_number: bool) -> None:
 
 def depth(value: Value) -> int:
     """How many textures hold each other."""
+    value = within(value)
     if isinstance(value, Product):
         return 1 + max(depth(value.first), depth(value.second))
     if isinstance(value, Ramp):
