@@ -91,8 +91,8 @@ bool usdCanFill(const StatedThing& medium) { return medium.type == "homogeneous"
 
 void usdFill(UsdLook& look, const StatedThing* material, const StatedThing& medium) {
     InsideCoefficients inside = insideOf(medium);
-    if (!writeClear(look, material, inside)) {
-        look.w.out.leftOut(medium.span, "an `interior`", "OpenPBR fills clear solids, with one inside each");
+    if (!usdCanFill(medium) || !writeClear(look, material, inside)) {
+        look.w.out.leftOut(medium.span, "an `interior`", "OpenPBR fills clear solids, evenly and with one inside each");
         if (material) usdWriteSurface(look, *material);
         for (const auto& unused : medium.takeUnused()) medium.has(unused.property);
         return;

@@ -72,7 +72,7 @@ std::optional<UsdPrim> glowing(const Placed& placed, const StatedThing& texture,
     std::optional<UsdPrim> prim = usdMesh(placed, w);
     if (!prim) return prim;
     const bool own = !stated || placed.thing->spectrum("radiance").texture; // the texture says how bright it is
-    const Vec3d rgb = own ? Vec3d(1, 1, 1) : rgbOf(*stated->curve, w.out.scene.daylight());
+    const Vec3d rgb = own ? usdFlatWhite(texture, w) : rgbOf(*stated->curve, w.out.scene.daylight());
     const double most = std::max(maxComponent(rgb), 1e-30);
     usdBind(*prim, usdGlow(texture, kUnitLuminance * (own ? 1 : stated->scale * most), rgb / most, w));
     return prim;
@@ -94,14 +94,19 @@ std::optional<UsdPrim> areaLight(const Placed& placed, UsdWriter& w) {
     }
     const auto stated = statedLight(light, {.power = kPiD * area, .units = exactUnits()}, w.out.scene);
     const StatedThing* const texture = textureOf(light, w);
-    const bool isPicture = texture && isLightPicture(*texture);
-    if (texture && !(light.type == "quad" && isPicture && isParallelogram(quadCorners(light))))
-        return glowing(placed, *texture, stated, w);
     const auto corners = light.type == "quad" ? quadCorners(light) : std::vector<Vec3d>();
+    const bool isRect = light.type == "quad" && isParallelogram(corners);
+    const bool isPicture = texture && stated && isLightPicture(*texture);
+    if (texture && !(isRect && isPicture)) {
+        if (usdShowsTexture(light, *texture, w.out.scene)) return glowing(placed, *texture, stated, w);
+        w.out.leftOut(texture->span, "the texture of a light", "its polygons have no texture coordinates");
+        for (const auto& unused : texture->takeUnused()) texture->has(unused.property);
+        if (!stated) return std::nullopt; // nothing but the texture says how bright it is
+    }
     std::optional<UsdPrim> prim;
-    if (light.type == "quad" && isParallelogram(corners)) {
+    if (isRect) {
         writeRect(prim.emplace("RectLight", w.take(light.name, "quad")), placed, corners, w);
-        if (texture) prim->set("asset inputs:texture:file", usdFile(w.out.files.refer(texture->word("file"))));
+        if (isPicture) prim->set("asset inputs:texture:file", usdFile(w.out.files.refer(texture->word("file"))));
     } else if (light.type == "sphere") {
         writeSphere(prim.emplace("SphereLight", w.take(light.name, "sphere")), placed, light, w);
     } else if (light.type == "disk") {

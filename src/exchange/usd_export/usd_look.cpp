@@ -107,6 +107,9 @@ void UsdLook::displacement(const StatedThing& shape) {
 void UsdLook::emission(const StatedThing& texture, double nits, Vec3d rgb) {
     constant("base_weight", 0);
     constant("specular_weight", 0);
+    const double most = maxComponent(rgb);
+    nits *= most; // colours are at most 1
+    rgb = rgb / most;
     std::string source = textureNode(texture, {true});
     if (!source.empty() && length(rgb - Vec3d(1, 1, 1)) > 1e-9)
         source = node("ND_multiply_color3", "tinted",

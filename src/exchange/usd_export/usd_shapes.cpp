@@ -4,6 +4,7 @@
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/ply_points.h"
+#include "spectrum/color_space.h"
 #include "spectrum/sensor.h"
 
 #include <algorithm>
@@ -333,7 +334,10 @@ void writeParts(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
 // A surface that emits: a mesh that is a light, or one of a material that shows a texture.
 void writeShining(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
     const StatedSpectrum emission = shape.spectrum("emission");
-    if (emission.texture) return usdBind(prim, usdGlow(*emission.texture, kUnitLuminance, {1, 1, 1}, w));
+    if (emission.texture && usdShowsTexture(shape, *emission.texture, w.out.scene))
+        return usdBind(prim, usdGlow(*emission.texture, kUnitLuminance, usdFlatWhite(*emission.texture, w), w));
+    if (emission.texture)
+        w.out.leftOut(shape.span, "the texture of `emission`", "its polygons have no texture coordinates");
     prim.api("MeshLightAPI").set("uniform token light:materialSyncMode", "\"noMaterialResponse\"");
     if (emission.curve) usdWriteAmount(prim, {emission.curve, 1}, 1, w);
 }
@@ -348,6 +352,22 @@ UsdDress dressOf(const StatedThing& shape, const StatedThing* material) {
 
 } // namespace
 
+bool usdShowsTexture(const StatedThing& shape, const StatedThing& texture, const StatedScene& scene) {
+    if (texture.usesPosition()) return true;
+    if (shape.type == "mesh" || shape.type == "subdivision") {
+        const auto stated = meshOf(shape, scene);
+        return stated && !stated->mesh.uvs.empty();
+    }
+    const auto mesh = polygonsOf(shape, scene);
+    return mesh && !mesh->uvs.empty();
+}
+
+Vec3d usdFlatWhite(const StatedThing& texture, UsdWriter& w) {
+    w.out.approximated(texture.span, "a texture of radiance",
+                       "its white is an even spectrum, that of OpenPBR is daylight: colours differ by some percent");
+    return toRgb(Xyz{1, 1, 1}, rgb::rec709);
+}
+
 std::optional<UsdPrim> usdMesh(const Placed& placed, UsdWriter& w) {
     const StatedThing& shape = *placed.thing;
     std::optional<MeshData> mesh;
@@ -360,6 +380,11 @@ std::optional<UsdPrim> usdMesh(const Placed& placed, UsdWriter& w) {
         if (shape.type == "plane") w.out.approximated(shape.span, "`plane`", "by a square of 20 km");
     }
     if (!mesh || mesh->positions.empty()) return std::nullopt;
+    const StatedThing* const material = shape.kind == schema::Kind::shape ? shape.reference("material") : nullptr;
+    if (mesh->uvs.empty() && shape.type != "mesh" && shape.type != "subdivision" && material &&
+        material->usesCoordinates(false) && !material->usesPosition())
+        w.out.approximated(shape.span, fmt::format("the texture of a `{}`", shape.type),
+                           "its polygons have no texture coordinates");
     UsdPrim prim("Mesh", w.take(shape.name, shape.type));
     writePolygons(prim, *mesh);
     writeDeformation(prim, shape, mesh->positions.size(), w);

@@ -261,9 +261,11 @@ std::string UsdLook::textureNode(const StatedThing& texture, const Asked& asked)
         made = noiseNode(texture, asked);
     else if (type == "ramp")
         made = rampNode(texture, asked);
-    if (made.empty())
+    if (made.empty()) {
         w.out.leftOut(texture.span, fmt::format("texture `{}`", type),
                       "it is not written as MaterialX; grey stands for it");
+        for (const auto& unused : texture.takeUnused()) texture.has(unused.property); // all of it is
+    }
     w.out.leaveOutUnused(texture);
     return made;
 }

@@ -69,6 +69,11 @@ void usdWriteLight(const Placed&, UsdPrim& parent, UsdWriter&);
 void usdWriteVolume(const Placed&, UsdPrim& parent, UsdWriter&);
 // Polygons of a shape or light as a Mesh, placed; nothing where it has none.
 std::optional<UsdPrim> usdMesh(const Placed&, UsdWriter&);
+// Whether polygons of a shape or light have what a texture is looked up by.
+bool usdShowsTexture(const StatedThing& shape, const StatedThing& texture, const StatedScene&);
+// What an even spectrum looks like, luminance 1: that of a texture of radiance where it is white, which is W0802.
+// Linear Rec. 709.
+Vec3d usdFlatWhite(const StatedThing& texture, UsdWriter&);
 // `inputs:intensity`, `inputs:color` and a temperature: of a radiance, or of an intensity over what an area shows.
 void usdWriteAmount(UsdPrim&, const StatedLight&, double times, UsdWriter&);
 bool usdIsAreaLight(const StatedThing&);

@@ -14,7 +14,7 @@ from .own import Prim, Stated
 from .report import Fate
 from .scene_text import Node
 from .surfaces import WRITERS, SurfaceWriter
-from .texture import Attribute, Const, Line, Uses, Value, write
+from .texture import Attribute, Const, Image, Line, Uses, Value, write
 
 CONTEXTS = ["mtlx", ""]  # of surface outputs, the first one that can be read
 
@@ -124,6 +124,8 @@ class Materials:
             if value is not None and value.number:
                 self.ctx.report.left_out(material.GetPrim(), "an even displacement", "it needs a texture here")
             return None
+        if isinstance(value, Image) and value.take == "red":
+            value = dataclasses.replace(value, take="")  # of a height the first channel counts
         node = Node("displacement").numbers([as_float(length * factor) * self.ctx.metres_per_scene_unit]).word("m")
         write(node.child("map"), value, uses, True)
         if vector:

@@ -285,7 +285,7 @@ def write(node: Node, value: Value, uses: Uses, is_number: bool) -> None:
             child = at.child("stop").numbers([as_float(place)])
             write(child, stop, uses, is_number)
     else:
-        if value.kind == "checker":
+        if value.kind == "checker" and not dict(value.properties)["scale"].endswith(" m"):
             uses.coordinates(value.at)
         at = _placed(node, value.at)
         at.word(value.kind)
