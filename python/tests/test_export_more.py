@@ -211,6 +211,8 @@ class Patterns(More):
             with self.subTest(noise):
                 text = self.agree(VIEW + ball + f"material surface diffuse {{ reflectance {noise} }}\n", 0.008, remarks=(NOISE_HERE,), more=(NOISE_THERE,))
                 self.assertIn('"ND_fractal3d_float"', text)
+                # The same strength comes back, or a ramp would change it.
+                self.assertNotIn("ramp", self.scene.read_text())
         # 0.5 · 2/√3 / (0.982 √2) over 1 + 1/2 + 1/4 + 1/8.
         stage_text = self.export(VIEW + ball + "material surface diffuse { reflectance noise { scale 20 cm; seed 4 } }\n") and self.usda.read_text()
         self.assertIn("without a seed", self.said)

@@ -74,7 +74,7 @@ std::optional<UsdPrim> glowing(const Placed& placed, const StatedThing& texture,
     const bool own = !stated || placed.thing->spectrum("radiance").texture; // the texture says how bright it is
     const Vec3d rgb = own ? usdFlatWhite(texture, w) : rgbOf(*stated->curve, w.out.scene.daylight());
     const double most = std::max(maxComponent(rgb), 1e-30);
-    usdBind(*prim, usdGlow(texture, kUnitLuminance * (own ? 1 : stated->scale * most), rgb / most, w));
+    usdBind(*prim, usdGlow({&texture, kUnitLuminance * (own ? 1 : stated->scale * most), rgb / most}, w));
     return prim;
 }
 

@@ -105,8 +105,6 @@ void UsdLook::displacement(const StatedThing& shape) {
 }
 
 void UsdLook::emission(const StatedThing& texture, double nits, Vec3d rgb) {
-    constant("base_weight", 0);
-    constant("specular_weight", 0);
     const double most = maxComponent(rgb);
     nits *= most; // colours are at most 1
     rgb = rgb / most;

@@ -229,9 +229,23 @@ std::string usdMaterial(const UsdDress& dress, UsdWriter& w) {
     return w.materials[dress] = path;
 }
 
-std::string usdGlow(const StatedThing& texture, double nits, Vec3d color, UsdWriter& w) {
+std::string usdGlow(const UsdGlowing& glow, UsdWriter& w) {
+    const StatedThing& texture = *glow.texture;
     UsdLook look(w.take(texture.name.empty() ? "" : texture.name + "_light", "light_texture"), w);
-    look.emission(texture, nits, color);
+    const StatedThing* const material = glow.shape ? glow.shape->reference("material") : nullptr;
+    if (glow.shape && (!material || material->type == "diffuse")) {
+        if (material)
+            diffuse(look, *material, "reflectance");
+        else
+            grey(look);
+    } else {
+        look.constant("base_weight", 0);
+        look.constant("specular_weight", 0);
+        if (material)
+            w.out.approximated(glow.shape->span, "the material of a shape that shows a texture as light",
+                               "it is black");
+    }
+    look.emission(texture, glow.nits, glow.color);
     std::string path = look.path();
     UsdPrim prim = look.take();
     w.looks.add(std::move(w.withRemarks(prim)));

@@ -326,7 +326,7 @@ void writeParts(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
         UsdPrim prim("Mesh", w.take(shape.name + "_" + part.group, "part"));
         writePolygons(prim, part.mesh);
         usdPlace(prim, placed, {}, w);
-        usdBind(prim, usdMaterial({.material = part.material}, w));
+        usdBind(prim, usdMaterial({.material = part.material, .interior = shape.reference("interior")}, w));
         parent.add(std::move(prim));
     }
 }
@@ -335,7 +335,8 @@ void writeParts(const Placed& placed, UsdPrim& parent, UsdWriter& w) {
 void writeShining(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
     const StatedSpectrum emission = shape.spectrum("emission");
     if (emission.texture && usdShowsTexture(shape, *emission.texture, w.out.scene))
-        return usdBind(prim, usdGlow(*emission.texture, kUnitLuminance, usdFlatWhite(*emission.texture, w), w));
+        return usdBind(prim,
+                       usdGlow({emission.texture, kUnitLuminance, usdFlatWhite(*emission.texture, w), &shape}, w));
     if (emission.texture)
         w.out.leftOut(shape.span, "the texture of `emission`", "its polygons have no texture coordinates");
     prim.api("MeshLightAPI").set("uniform token light:materialSyncMode", "\"noMaterialResponse\"");

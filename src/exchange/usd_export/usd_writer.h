@@ -81,8 +81,14 @@ bool usdIsAreaLight(const StatedThing&);
 // The path of a material; empty for nothing.
 std::string usdMaterial(const UsdDress&, UsdWriter&);
 void usdBind(UsdPrim&, const std::string& material);
-// Of a black surface that shows a texture as light: nits where it is 1, times a colour.
-std::string usdGlow(const StatedThing& texture, double nits, Vec3d color, UsdWriter&);
+// Of a surface that shows a texture as light: nits where it is 1, times a colour. Black, or matte as the shape is.
+struct UsdGlowing {
+    const StatedThing* texture = nullptr;
+    double nits = 0;
+    Vec3d color;
+    const StatedThing* shape = nullptr;
+};
+std::string usdGlow(const UsdGlowing&, UsdWriter&);
 
 // Its path; empty where USD has none like it.
 std::string usdWriteCamera(const StatedThing&, UsdPrim& parent, UsdWriter&);
