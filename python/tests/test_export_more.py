@@ -42,7 +42,11 @@ class Instances(More):
     def test_places_of_a_file(self) -> None:
         # A quarter turn about y takes x to -z. Sizes come first.
         half = 0.5**0.5
-        self.points("at.ply", "x y z qx qy qz qw sx sy sz", [(1, 0, 0, 0, 0, 0, 1, 1, 1, 1), (-1, 0, 0.5, 0, half, 0, half, 2, 1, 1), (0, 0, -1, 0, 0, 0, 1, -1, 2, 1)])
+        self.points(
+            "at.ply",
+            "x y z qx qy qz qw sx sy sz",
+            [(1, 0, 0, 0, 0, 0, 1, 1, 1, 1), (-1, 0, 0.5, 0, half, 0, half, 2, 1, 1), (0, 0, -1, 0, 0, 0, 1, -1, 2, 1)],
+        )
         text = self.agree(VIEW + PIN + 'instances pin { points "at.ply" }\n')
         self.assertEqual(text.count("def PointInstancer"), 1)
         first, turned, mirrored = self.transforms()
@@ -63,7 +67,12 @@ class Instances(More):
         ):
             with self.subTest(places):
                 self.agree(VIEW + PIN + f"instances pin {{ {places} }}\n")
-        self.agree(VIEW + PIN + "shape hill sphere { center 0 -0.5 0; radius 1.2 }\nshape cap mesh { points { - -1 0 1; - 1 0 1; - 0 1.4 -1 }; faces { - 0 1 2 } }\n" "instances pin { scatter 12; over cap; align on }\n")
+        self.agree(
+            VIEW
+            + PIN
+            + "shape hill sphere { center 0 -0.5 0; radius 1.2 }\nshape cap mesh { points { - -1 0 1; - 1 0 1; - 0 1.4 -1 }; faces { - 0 1 2 } }\n"
+            "instances pin { scatter 12; over cap; align on }\n"
+        )
         sizes = np.linalg.norm(self.transforms()[:, :3, :3], axis=2)
         np.testing.assert_allclose(sizes, 1, atol=1e-6)
         up = self.transforms()[:, 1, :3]  # the normal of the triangle: (b - a) × (c - a) = (0, 4, 2.8)
@@ -118,8 +127,12 @@ class Displacement(More):
         return shapes[0]["bounds_m"]["lower"][1], shapes[0]["bounds_m"]["upper"][1]
 
     def test_by_a_pattern(self) -> None:
-        self.agree(VIEW + self.CAGE + "displacement 0.4 m { map noise { scale 0.5 m; octaves 2 } } }\n", 0.01, remarks=(NOISE_HERE,), more=(NOISE_THERE,))
-        self.agree(VIEW + self.CAGE + "displacement -0.2 m { map ramp { over u; stop 0 0; stop 0.5 1; stop 1 0 }; midpoint 0 }; material red }\n", 0.01)
+        self.agree(
+            VIEW + self.CAGE + "displacement 0.4 m { map noise { scale 0.5 m; octaves 2 } } }\n", 0.01, remarks=(NOISE_HERE,), more=(NOISE_THERE,)
+        )
+        self.agree(
+            VIEW + self.CAGE + "displacement -0.2 m { map ramp { over u; stop 0 0; stop 0.5 1; stop 1 0 }; midpoint 0 }; material red }\n", 0.01
+        )
 
     def test_two_shapes_of_one_material(self) -> None:
         self.picture()
@@ -150,9 +163,16 @@ class TexturedLights(More):
     def test_rectangles_with_a_picture(self) -> None:
         self.picture("map.hdr")
         self.picture()
-        text = self.agree(DARK + 'light lamp quad { points -1 0.2 -1  1 0.2 -1  1 2 -1  -1 2 -1; luminance 60000 nits; texture image "map.png" }\n', 0.006, 64)
+        text = self.agree(
+            DARK + 'light lamp quad { points -1 0.2 -1  1 0.2 -1  1 2 -1  -1 2 -1; luminance 60000 nits; texture image "map.png" }\n', 0.006, 64
+        )
         self.assertIn("asset inputs:texture:file", text)
-        self.agree(DARK + 'light lamp quad { size 2 1; luminance 60000 nits; color rgb 1 0.6 0.3; texture image "map.png"; transform { rotate y 20 deg; translate 0 1 0 } }\n', 0.008, 64)
+        self.agree(
+            DARK
+            + 'light lamp quad { size 2 1; luminance 60000 nits; color rgb 1 0.6 0.3; texture image "map.png"; transform { rotate y 20 deg; translate 0 1 0 } }\n',
+            0.008,
+            64,
+        )
 
     def test_other_shapes_and_patterns(self) -> None:
         self.picture()
@@ -181,11 +201,20 @@ class TexturedLights(More):
 class Patterns(More):
     def test_checks(self) -> None:
         self.picture()
-        for pattern in ("checker { even rgb 0.8 0.2 0.1; odd 0.1; scale 4 }", 'checker { even image "map.png"; odd placed { map image "map.png"; scale 3 2 }; scale 3 }'):
+        for pattern in (
+            "checker { even rgb 0.8 0.2 0.1; odd 0.1; scale 4 }",
+            'checker { even image "map.png"; odd placed { map image "map.png"; scale 3 2 }; scale 3 }',
+        ):
             with self.subTest(pattern):
                 text = self.agree(VIEW + WALL + f"material surface diffuse {{ reflectance {pattern} }}\n", 0.008)
                 self.assertIn('"ND_checkerboard_color3"', text)
-        self.agree(VIEW + WALL + "material surface openpbr { base-metalness checker { even 1; odd 0; scale 4 }; base-color rgb 0.8 0.6 0.2; specular-roughness 0.5 }\n", 0.01, 96)
+        self.agree(
+            VIEW
+            + WALL
+            + "material surface openpbr { base-metalness checker { even 1; odd 0; scale 4 }; base-color rgb 0.8 0.6 0.2; specular-roughness 0.5 }\n",
+            0.01,
+            96,
+        )
 
     def test_cubes_stand_where_they_stood(self) -> None:
         shapes = "shape a box { min -1.2 0 -0.5; max -0.2 1 0.5; material surface }\nshape b sphere { radius 0.6; material surface; transform { rotate y 30 deg; translate 0.8 0.6 0 } }\n"
@@ -203,13 +232,20 @@ class Patterns(More):
         ):
             with self.subTest(ramp):
                 self.agree(VIEW + WALL + f"material surface diffuse {{ reflectance ramp {{ {ramp} }} }}\n", 0.008)
-        self.agree(VIEW + WALL + "material surface diffuse { reflectance placed { map ramp { over u; stop 0 0.1; stop 1 0.8 }; scale 2 1; rotate 30 deg } }\n", 0.008)
+        self.agree(
+            VIEW
+            + WALL
+            + "material surface diffuse { reflectance placed { map ramp { over u; stop 0 0.1; stop 1 0.8 }; scale 2 1; rotate 30 deg } }\n",
+            0.008,
+        )
 
     def test_noise(self) -> None:
         ball = "shape ball sphere { radius 0.8; material surface; transform { translate 0 0.8 0 } }\n"
         for noise in ("noise { scale 40 cm }", "noise { scale 0.3 m; octaves 6; lacunarity 2.5; gain 0.6 }", "noise { scale 0.5 m; octaves 1 }"):
             with self.subTest(noise):
-                text = self.agree(VIEW + ball + f"material surface diffuse {{ reflectance {noise} }}\n", 0.008, remarks=(NOISE_HERE,), more=(NOISE_THERE,))
+                text = self.agree(
+                    VIEW + ball + f"material surface diffuse {{ reflectance {noise} }}\n", 0.008, remarks=(NOISE_HERE,), more=(NOISE_THERE,)
+                )
                 self.assertIn('"ND_fractal3d_float"', text)
                 # The same strength comes back, or a ramp would change it.
                 self.assertNotIn("ramp", self.scene.read_text())
@@ -228,8 +264,17 @@ class Patterns(More):
     def test_channels_and_alpha(self) -> None:
         self.picture()
         self.agree(VIEW + WALL + 'material surface diffuse { reflectance channel { of image "map.png" space=data; take green } }\n', 0.008)
-        self.agree(VIEW + WALL + 'material surface openpbr { specular-roughness channel { of image "map.png" space=data; take blue }; base-color 0.4 }\n', 0.01, 96)
-        self.agree(VIEW + WALL + 'material surface diffuse { reflectance placed { map placed { map image "map.png"; scale 2 1; offset 0.1 0 }; scale 1 3; rotate 20 deg } }\n', 0.008)
+        self.agree(
+            VIEW + WALL + 'material surface openpbr { specular-roughness channel { of image "map.png" space=data; take blue }; base-color 0.4 }\n',
+            0.01,
+            96,
+        )
+        self.agree(
+            VIEW
+            + WALL
+            + 'material surface diffuse { reflectance placed { map placed { map image "map.png"; scale 2 1; offset 0.1 0 }; scale 1 3; rotate 20 deg } }\n',
+            0.008,
+        )
 
     def test_what_cannot_be_written_is_named(self) -> None:
         self.export(VIEW + WALL + "material surface diffuse { reflectance triplanar { map checker { scale 4 } } }\n")
@@ -250,10 +295,17 @@ class Insides(More):
                 self.agree(VIEW + self.BALL + f"material surface {material}\nmedium inside homogeneous {{ {medium} }}\n", 0.01, 96)
 
     def test_depth_colour_and_scattering(self) -> None:
-        self.export(VIEW + self.BALL + "material surface dielectric { ior 1.3 }\nmedium inside homogeneous { scattering 3 per-m; absorption 1 per-m; phase henyey-greenstein 0.5 }\n")
+        self.export(
+            VIEW
+            + self.BALL
+            + "material surface dielectric { ior 1.3 }\nmedium inside homogeneous { scattering 3 per-m; absorption 1 per-m; phase henyey-greenstein 0.5 }\n"
+        )
         stage = self.opened()
         shader = UsdShade.Shader(stage.GetPrimAtPath("/Looks/surface/surface"))
-        value = {name: shader.GetInput(name).Get() for name in ("transmission_depth", "transmission_color", "transmission_scatter", "transmission_scatter_anisotropy")}
+        value = {
+            name: shader.GetInput(name).Get()
+            for name in ("transmission_depth", "transmission_color", "transmission_scatter", "transmission_scatter_anisotropy")
+        }
         # The mean free path of 4 per metre, what is left after it, and what it scatters of that.
         self.assertAlmostEqual(value["transmission_depth"], 0.25, 6)
         np.testing.assert_allclose(value["transmission_color"], [np.exp(-1)] * 3, rtol=1e-6)
@@ -262,7 +314,9 @@ class Insides(More):
 
     def test_coloured_media(self) -> None:
         self.agree(
-            VIEW + self.BALL + "material surface dielectric { ior 1.3 }\nmedium inside homogeneous { scattering 1 per-m; absorption rgb 0.2 0.6 1.5 per-m }\n",
+            VIEW
+            + self.BALL
+            + "material surface dielectric { ior 1.3 }\nmedium inside homogeneous { scattering 1 per-m; absorption rgb 0.2 0.6 1.5 per-m }\n",
             0.03,
             96,
             remarks=("a medium that varies with the wavelength",),
@@ -276,7 +330,9 @@ class Insides(More):
 
     def test_translucent_materials(self) -> None:
         self.agree(
-            VIEW + self.BALL.replace("; interior inside", "") + "material surface subsurface { reflectance rgb 0.8 0.5 0.3; mean-free-path 5 cm; roughness 0.3; ior 1.4; boundary diffuse }\n",
+            VIEW
+            + self.BALL.replace("; interior inside", "")
+            + "material surface subsurface { reflectance rgb 0.8 0.5 0.3; mean-free-path 5 cm; roughness 0.3; ior 1.4; boundary diffuse }\n",
             0.03,
             96,
             remarks=("`subsurface` is approximated",),

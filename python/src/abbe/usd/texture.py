@@ -100,7 +100,8 @@ class Line:
     bias: float
 
 
-Value = Const | Image | Attribute | Product | Ramp | Pattern | Line
+Plain = Const | Image | Attribute | Product | Ramp | Pattern
+Value = Plain | Line
 
 
 def clamped(x: float) -> float:
@@ -127,8 +128,8 @@ def curve(value: Value, f: Callable[[float], float], straight: bool = False) -> 
     if isinstance(value, Const):
         return Const(tuple(f(x) for x in value.values))
     if isinstance(value, Line):
-        line, g = value, f
-        return curve(line.value, lambda x: g(line.scale * x + line.bias), straight)
+        s, b = value.scale, value.bias
+        return curve(value.value, lambda x: f(s * x + b), straight)
     count = 2 if straight else LUT_STOPS
     places = [i / (count - 1) for i in range(count)]
     return Ramp(value, tuple((x, Const((clamped(f(x)),))) for x in places))
@@ -145,7 +146,8 @@ def scaled(value: Value, scale: tuple[float, ...], bias: tuple[float, ...], is_n
     if is_number:
         s, b = scale[0], bias[0]
         if isinstance(value, Line):
-            value, s, b = value.value, s * value.scale, s * value.bias + b
+            s, b = s * value.scale, s * value.bias + b
+            value = value.value
         if abs(s - 1) < SAME and abs(b) < SAME:
             return value
         if 0 <= b <= 1 and 0 <= s + b <= 1:
@@ -162,12 +164,12 @@ def scaled(value: Value, scale: tuple[float, ...], bias: tuple[float, ...], is_n
     return None
 
 
-def within(value: Value) -> Value:
+def within(value: Value) -> Plain:
     """The same, ending at 0 and 1."""
     return _clipped(value.value, value.scale, value.bias) if isinstance(value, Line) else value
 
 
-def _clipped(value: Value, s: float, b: float) -> Value:
+def _clipped(value: Value, s: float, b: float) -> Const | Ramp:
     """A straight line where it lies between 0 and 1, and 0 or 1 beyond."""
     if s == 0:
         return Const((b,))
