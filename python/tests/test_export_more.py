@@ -120,6 +120,22 @@ class Displacement(More):
         reader = UsdShade.Shader(preview.GetInput("displacement").GetConnectedSources()[0][0].source.GetPrim())
         np.testing.assert_allclose((reader.GetInput("scale").Get()[0], reader.GetInput("bias").Get()[0]), (0.4, -0.1), atol=1e-6)
 
+    def test_by_a_channel(self) -> None:
+        self.picture()
+        raised = 'displacement 0.4 m { map channel { of image "map.png" space=data; take green }; midpoint 0.25 }'
+        self.agree(VIEW + self.CAGE + raised + "; material red }\n", 0.01)
+        low, high = self.info_of("sheet")
+        self.assertAlmostEqual(high, 0.4 * (220 / 255 - 0.25), delta=2e-3)
+        self.assertAlmostEqual(low, 0.4 * (40 / 255 - 0.25), delta=2e-3)
+
+    def test_cages_of_several_materials(self) -> None:
+        points = "v -1 0 1\nv 0 0 1\nv 1 0 1\nv -1 0.4 -1\nv 0 0 -1\nv 1 0.4 -1\n"
+        (self.folder / "cage.obj").write_text(points + "g left\nf 1 2 5 4\ng right\nf 2 3 6 5\n")
+        blue = "material blue diffuse { reflectance rgb 0.1 0.2 0.8 }\n"
+        text = self.agree(VIEW + blue + 'shape sheet subdivision "cage.obj" { material red; material blue group="right" }\n')
+        self.assertEqual(text.count("def GeomSubset"), 1)
+        self.assertIn("int[] indices = [1]", text)
+
     def info_of(self, name: str) -> tuple[float, float]:
         """The lowest and highest of a shape that was read back."""
         shapes = [s for s in self.info()["shape_list"] if s["name"].endswith(name)]

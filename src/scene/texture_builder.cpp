@@ -22,11 +22,12 @@ TextureUse useFor(const std::optional<schema::SpectrumRole>& role) {
 
 } // namespace
 
-// What a texture is made of is asked for the same as the whole.
+// What a texture is made of is asked for the same as the whole: a field of numbers for numbers, but heights for
+// heights, which have derivatives.
 bool TextureBuilder::prepare(std::uint32_t texture, TextureUse use, Span user) {
     if (!textures_[texture]->prepare(use, user, context_.diagnostics)) return false;
     for (const auto& [part, asNumber] : parts_[texture].parts)
-        if (!prepare(part, asNumber ? TextureUse::number : use, user)) return false;
+        if (!prepare(part, asNumber && use != TextureUse::heights ? TextureUse::number : use, user)) return false;
     return true;
 }
 

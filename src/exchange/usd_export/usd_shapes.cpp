@@ -131,12 +131,13 @@ void writeDeformation(UsdPrim& prim, const StatedThing& shape, std::size_t count
 
 // ---- cages
 
-SubdivisionCage cageOf(const StatedThing& shape, UsdWriter& w) {
+CageFile cageOf(const StatedThing& shape, UsdWriter& w) {
     const auto* file = shape.value<schema::Text>("file");
     if (!file) file = shape.value<schema::Text>("at.file");
-    SubdivisionCage cage;
+    CageFile read;
+    SubdivisionCage& cage = read.cage;
     if (file) {
-        cage = readCage(file->value).cage;
+        read = readCage(file->value);
         const auto unit = static_cast<float>(w.out.scene.unit(shape.span));
         for (Vec3& p : cage.positions) p = p * unit;
     } else {
@@ -155,7 +156,7 @@ SubdivisionCage cageOf(const StatedThing& shape, UsdWriter& w) {
         const auto* const rows = shape.value<schema::IndexRows>("uv-faces");
         cage.uvCorners = rows ? rows->indices : cage.corners;
     }
-    return cage;
+    return read;
 }
 
 void addSharpness(SubdivisionCage& cage, const StatedThing& shape) {
@@ -206,8 +207,42 @@ void writeRules(UsdPrim& prim, const SubdivisionCage& cage, const StatedThing& s
         w.out.approximated(shape.span, "`creasing chaikin`", "creases are uniform in USD");
 }
 
+// What a shape is made of: with it what fills and displaces it.
+UsdDress dressOf(const StatedThing& shape, const StatedThing* material) {
+    UsdDress dress{.material = material, .interior = shape.reference("interior")};
+    if (shape.type == "subdivision" && shape.has("displacement")) dress.displaced = &shape;
+    Export::ignore(shape, {"displacement.map", "displacement.midpoint", "displacement.kind", "displacement.space"});
+    return dress;
+}
+
+// Faces of groups with a material of their own: a subset of the cage each.
+void writeGroups(UsdPrim& prim, const CageFile& read, const StatedThing& shape, UsdWriter& w) {
+    const auto* const materials = shape.find("material");
+    if (!materials) return;
+    std::vector<bool> taken(read.groups.size());
+    for (const auto& value : *materials) {
+        const auto* const one = std::get_if<schema::GroupReference>(&value);
+        if (!one) continue;
+        std::vector<std::uint32_t> faces;
+        for (std::size_t i = 0; i < read.groups.size(); ++i) {
+            if (read.groups[i].name != one->group || taken[i]) continue;
+            taken[i] = true;
+            const std::size_t end =
+                i + 1 < read.groups.size() ? read.groups[i + 1].firstFace : read.cage.faceSizes.size();
+            for (std::size_t face = read.groups[i].firstFace; face < end; ++face)
+                faces.push_back(static_cast<std::uint32_t>(face));
+        }
+        UsdPrim subset("GeomSubset", w.take(shape.name + "_" + one->group, "part"));
+        subset.set("uniform token elementType", "\"face\"").set("uniform token familyName", "\"materialBind\"");
+        subset.set("int[] indices", usdIndices(faces));
+        usdBind(subset, usdMaterial(dressOf(shape, w.out.scene.thing(one->reference)), w));
+        prim.add(std::move(subset));
+    }
+}
+
 void writeCage(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
-    SubdivisionCage cage = cageOf(shape, w);
+    CageFile read = cageOf(shape, w);
+    SubdivisionCage& cage = read.cage;
     addSharpness(cage, shape);
     prim.set("int[] faceVertexCounts", usdIndices(cage.faceSizes));
     prim.set("int[] faceVertexIndices", usdIndices(cage.corners));
@@ -232,6 +267,7 @@ void writeCage(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
     if (!cage.holes.empty()) prim.set("int[] holeIndices", usdIndices(cage.holes));
     writeAttributes(prim, cage.attributes);
     writeDeformation(prim, shape, cage.positions.size(), w);
+    writeGroups(prim, read, shape, w);
     Export::ignore(shape, {"uv-faces", "attribute"});
 }
 
@@ -339,16 +375,11 @@ void writeShining(UsdPrim& prim, const StatedThing& shape, UsdWriter& w) {
                        usdGlow({emission.texture, kUnitLuminance, usdFlatWhite(*emission.texture, w), &shape}, w));
     if (emission.texture)
         w.out.leftOut(shape.span, "the texture of `emission`", "its polygons have no texture coordinates");
+    if (const StatedThing* const material = shape.reference("material"))
+        w.out.approximated(shape.span, fmt::format("`{}` on a shape that shines", material->type),
+                           "it is black: meshes that are lights reflect nothing");
     prim.api("MeshLightAPI").set("uniform token light:materialSyncMode", "\"noMaterialResponse\"");
     if (emission.curve) usdWriteAmount(prim, {emission.curve, 1}, 1, w);
-}
-
-// What a shape is made of: with it what fills and displaces it.
-UsdDress dressOf(const StatedThing& shape, const StatedThing* material) {
-    UsdDress dress{.material = material, .interior = shape.reference("interior")};
-    if (shape.type == "subdivision" && shape.has("displacement")) dress.displaced = &shape;
-    Export::ignore(shape, {"displacement.map", "displacement.midpoint", "displacement.kind", "displacement.space"});
-    return dress;
 }
 
 } // namespace

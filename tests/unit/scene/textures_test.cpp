@@ -3,6 +3,7 @@
 #include "render/surface_input.h"
 #include "scene_test_fixture.h"
 
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -225,4 +226,27 @@ TEST_CASE("attributes of subdivision surfaces are smoothed as the points are: a 
                           file.path.string()));
     REQUIRE(codes(flat).empty());
     CHECK(attributeAt(flat, "wear", {0.3, 0.6, 3}, {0, 0, -1})->x == doctest::Approx(0.3));
+}
+
+TEST_CASE("heights may be a channel of a picture") {
+    const auto raised = [](const std::string& map) {
+        return build(
+            fmt::format("material m diffuse\nshape subdivision {{ scheme bilinear; points 0 0 0  1 0 0  1 1 0  0 1 0; "
+                        "faces {{ - 0 1 2 "
+                        "3 }}; uvs 0 0 1 0 1 1 0 1; material m; displacement 0.5 m {{ map {}; midpoint 0 }} }}\n",
+                        map));
+    };
+    const std::string picture = "image \"" ABBE_SOURCE_DIR "/tests/snippets/any.png\" space=data";
+    const TestScene whole = raised(picture), red = raised("channel { of " + picture + "; take red }");
+    REQUIRE(codes(whole).empty());
+    REQUIRE(codes(red).empty());
+    double highest = 0;
+    for (const Vec3d from : {Vec3d{0.2, 0.3, 3}, Vec3d{0.7, 0.4, 3}, Vec3d{0.6, 0.8, 3}}) {
+        const WorldHit a = trace(whole, from, {0, 0, -1}), b = trace(red, from, {0, 0, -1});
+        REQUIRE(a.met);
+        REQUIRE(b.met);
+        highest = std::max(highest, a.p.z);
+        CHECK(b.p.z == doctest::Approx(a.p.z).epsilon(1e-5));
+    }
+    CHECK(highest > 0.01);
 }
