@@ -1,6 +1,6 @@
-// The commands and flags as plain data, read from the library's parser: what help, the man page and completions are
-// made of. Nothing else lists them. And what is made of them: abbe(1) and others for `man`, and completion of commands, flags and
-// words of the language in shells.
+// The commands and flags as plain data, read from the library's parser: what help, man pages and completions are made
+// of. Nothing else lists them. And what is made of them: abbe(1) and its fellows for `man`, and completion of commands,
+// flags and words of the language in shells.
 #pragma once
 
 #include <string>
@@ -40,7 +40,8 @@ std::string commandListText(const CommandInfo& root);
 // "abbe render": the command, or action of one, that these words name; null if there is none.
 const CommandInfo* findCommand(const CommandInfo& root, const std::vector<std::string>& words);
 
-// In the man macros of troff, UTF-8: `abbe`, then `abbe-render` and the others. `version` is that of the program: "0.1.0".
+// In the man macros of troff, UTF-8: `abbe`, then `abbe-render` and the others. `version` is that of the program:
+// "0.1.0".
 struct ManPage {
     std::string name, text;
 };
