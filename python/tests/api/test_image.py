@@ -128,7 +128,7 @@ class Package(unittest.TestCase):
             loaded = {line.split()[-1] for line in file if ".so" in line}
         # extensions of Python's own, such as _ctypes, bring theirs
         base = re.compile(
-            r"/(ld-linux.*|lib(c|m|dl|rt|pthread|util|stdc\+\+|gcc_s|z|expat|bz2|lzma|ffi|crypto|ssl|sqlite3|uuid|mpdec|readline|tinfo|ncursesw|python3.*))\.so[0-9.]*$"
+            r"/(ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|stdc\+\+|gcc_s|z|expat|bz2|lzma|ffi|crypto|ssl|sqlite3|uuid|mpdec|readline|tinfo|ncursesw|python3.*))\.so[0-9.]*$"
         )
         foreign = {path for path in loaded if not base.search(path) and "site-packages" not in path and "lib-dynload" not in path}
         foreign = {path for path in foreign if not re.search(r"/lib(z|bz2|c|m|stdc\+\+|gcc_s|expat|lzma|ffi|python3\.[0-9]+)[.-]", path)}

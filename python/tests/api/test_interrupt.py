@@ -28,6 +28,8 @@ def large_scene(folder: Path) -> Path:
 class Interrupted(InFolder):
     def setUp(self) -> None:
         super().setUp()
+        # A shell's background jobs begin with Ctrl-C ignored.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         self.path = large_scene(self.folder)
 
     def returns_within_a_second(self, call: Callable[[], object]) -> None:
@@ -72,6 +74,7 @@ class Interrupted(InFolder):
 
     def end_of(self, program: str) -> tuple[int, float, str]:
         """Exit status of a program that is interrupted while it loads, seconds from then to its end, and its last line."""
+        program = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n" + program
         with subprocess.Popen([sys.executable, "-c", program, self.path], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None
             process.stdout.readline()
