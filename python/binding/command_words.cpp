@@ -13,10 +13,7 @@ std::vector<std::string> commandWords(const RenderOptions& o) {
         words.push_back(std::move(value));
     };
     const BuildOptions& b = o.build;
-    for (const std::string& define : o.input.defines) add("-D", define);
-    for (const std::string& variant : o.input.layers.variants) add("--variant", variant);
-    for (const std::string& set : o.input.layers.sets) add("--set", set);
-    for (const std::string& folder : o.input.layers.search) add("--search", folder);
+    for (const auto& [flag, value] : flagsOf(o.input)) add(flag, value);
     if (o.input.frame) add("--frames", std::to_string(*o.input.frame));
     if (!o.output.empty()) add("-o", o.output);
     if (!b.camera.empty()) add("--camera", b.camera);

@@ -31,6 +31,18 @@ std::vector<const schema::Document*> documentsOf(const schema::SceneTree& tree) 
 
 } // namespace
 
+std::vector<std::pair<const char*, std::string>> flagsOf(const SceneInput& input) {
+    std::vector<std::pair<const char*, std::string>> flags;
+    const auto add = [&](const char* flag, const std::vector<std::string>& values) {
+        for (const std::string& value : values) flags.emplace_back(flag, value);
+    };
+    add("-D", input.defines);
+    add("--variant", input.layers.variants);
+    add("--set", input.layers.sets);
+    add("--search", input.layers.search);
+    return flags;
+}
+
 ExitCode LoadedScene::exitCode() const {
     if (!readable && !import) return ExitCode::system;
     return diagnostics.hasErrors() ? ExitCode::faulty : ExitCode::done;

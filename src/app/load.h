@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace abbe {
@@ -41,6 +42,9 @@ struct SceneInput {
     // The text, where an editor holds it; `path` is what it is called then, too.
     std::optional<std::string> text = {};
 };
+
+// The flags that choose the same of a scene again, with their values: `-D`, `--variant`, `--set`, `--search`.
+std::vector<std::pair<const char*, std::string>> flagsOf(const SceneInput&);
 
 // A scene file that was read and resolved. Not movable: the tree refers to sources and types.
 struct LoadedScene {

@@ -76,6 +76,11 @@ std::vector<Reach> reachesAround(const fs::path& folder) {
     return found;
 }
 
+bool isSearchStated() {
+    const std::lock_guard lock(places().mutex);
+    return std::ranges::any_of(places().reaches, [](const auto& entry) { return !entry.second.search.empty(); });
+}
+
 // Nothing if no enclosed folder is around `from`.
 std::vector<fs::path> enclosuresAround(const fs::path& from) {
     const std::lock_guard lock(places().mutex);
@@ -135,8 +140,9 @@ FileReach::~FileReach() {
 std::vector<fs::path> searchFolders(const fs::path& from) {
     if (!enclosuresAround(from).empty()) return {};
     std::vector<fs::path> folders;
-    for (const Reach& reach : reachesAround(folderOf(from)))
-        folders.insert(folders.end(), reach.search.begin(), reach.search.end());
+    if (isSearchStated()) // else no path has to be looked up: this is asked for every name that is not beside its scene
+        for (const Reach& reach : reachesAround(folderOf(from)))
+            folders.insert(folders.end(), reach.search.begin(), reach.search.end());
     std::ranges::move(foldersOfEnvironment(), std::back_inserter(folders));
     return folders;
 }

@@ -15,10 +15,7 @@ std::string RenderRun::replayCommand() const {
     const auto add = [&](const char* flag, std::string_view value) {
         command += fmt::format(" {} {}", flag, shellQuoted(value));
     };
-    for (const std::string& define : options_.input.defines) add("-D", define);
-    for (const std::string& variant : options_.input.layers.variants) add("--variant", variant);
-    for (const std::string& set : options_.input.layers.sets) add("--set", set);
-    for (const std::string& folder : options_.input.layers.search) add("--search", folder);
+    for (const auto& [flag, value] : flagsOf(options_.input)) add(flag, value);
     if (options_.input.frame) command += fmt::format(" --frame {}", *options_.input.frame);
     if (b.fps) add("--fps", fmt::format("{}", *b.fps));
     if (!b.camera.empty()) add("--camera", b.camera);

@@ -18,10 +18,7 @@ std::string ViewSession::replayCommand() const {
     const auto add = [&](const char* flag, std::string_view value) {
         command += fmt::format(" {} {}", flag, shellQuoted(value));
     };
-    for (const std::string& define : request_.input.defines) add("-D", define);
-    for (const std::string& variant : request_.input.layers.variants) add("--variant", variant);
-    for (const std::string& set : request_.input.layers.sets) add("--set", set);
-    for (const std::string& folder : request_.input.layers.search) add("--search", folder);
+    for (const auto& [flag, value] : flagsOf(request_.input)) add(flag, value);
     if (request_.input.frame) add("--frame", std::to_string(*request_.input.frame));
     if (!request_.build.camera.empty()) add("--camera", request_.build.camera);
     if (request_.build.size) add("--size", fmt::format("{}x{}", request_.build.size->x, request_.build.size->y));

@@ -160,18 +160,15 @@ void append(MeshData& to, const MeshData& from) {
 
 // Faces of groups with a material of their own, apart from the others.
 void takeParts(StatedMesh& out, const MeshFile& read, const StatedThing& thing, const StatedScene& scene) {
-    const auto* const materials = thing.find("material");
-    if (!materials) return;
-    std::vector<bool> taken(read.groups.size());
-    for (const auto& value : *materials) {
-        const auto* const one = std::get_if<schema::GroupReference>(&value);
-        if (!one) continue;
-        StatedMesh::Part part{one->group, {}, scene.thing(one->reference)};
-        for (std::size_t i = 0; i < read.groups.size(); ++i)
-            if (read.groups[i].name == one->group && !taken[i]) {
-                taken[i] = true;
-                append(part.mesh, extractGroup(read, read.groups[i]));
-            }
+    std::vector<std::string> names;
+    for (const auto& group : read.groups) names.push_back(group.name);
+    std::vector<bool> taken(names.size());
+    for (const DressedGroups& one : dressedGroups(thing, names, scene)) {
+        StatedMesh::Part part{one.group, {}, one.material};
+        for (const std::size_t i : one.runs) {
+            taken[i] = true;
+            append(part.mesh, extractGroup(read, read.groups[i]));
+        }
         out.parts.push_back(std::move(part));
     }
     if (out.parts.empty()) return;
@@ -182,6 +179,25 @@ void takeParts(StatedMesh& out, const MeshFile& read, const StatedThing& thing, 
 }
 
 } // namespace
+
+std::vector<DressedGroups> dressedGroups(const StatedThing& thing, const std::vector<std::string>& names,
+                                         const StatedScene& scene) {
+    std::vector<DressedGroups> found;
+    const auto* const materials = thing.find("material");
+    if (!materials) return found;
+    std::vector<bool> taken(names.size());
+    for (const auto& value : *materials) {
+        const auto* const one = std::get_if<schema::GroupReference>(&value);
+        if (!one) continue;
+        DressedGroups& dressed = found.emplace_back(DressedGroups{one->group, scene.thing(one->reference), {}});
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (names[i] != one->group || taken[i]) continue;
+            taken[i] = true;
+            dressed.runs.push_back(i);
+        }
+    }
+    return found;
+}
 
 std::optional<StatedMesh> meshOf(const StatedThing& thing, const StatedScene& scene) {
     StatedMesh out;

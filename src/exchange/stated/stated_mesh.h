@@ -28,6 +28,14 @@ struct StatedMesh {
 // Throws IoError.
 std::optional<StatedMesh> meshOf(const StatedThing&, const StatedScene&);
 
+// Groups of a file whose faces have a material of their own: `material NAME group="left"`.
+struct DressedGroups {
+    std::string group;
+    const StatedThing* material = nullptr;
+    std::vector<std::size_t> runs; // indices of `names` with that name, no index twice
+};
+std::vector<DressedGroups> dressedGroups(const StatedThing&, const std::vector<std::string>& names, const StatedScene&);
+
 // What a subdivision surface states beside its cage goes with being smooth.
 void ignoreCage(const StatedThing&);
 

@@ -217,25 +217,19 @@ UsdDress dressOf(const StatedThing& shape, const StatedThing* material) {
 
 // Faces of groups with a material of their own: a subset of the cage each.
 void writeGroups(UsdPrim& prim, const CageFile& read, const StatedThing& shape, UsdWriter& w) {
-    const auto* const materials = shape.find("material");
-    if (!materials) return;
-    std::vector<bool> taken(read.groups.size());
-    for (const auto& value : *materials) {
-        const auto* const one = std::get_if<schema::GroupReference>(&value);
-        if (!one) continue;
+    std::vector<std::string> names;
+    for (const CageFile::Group& group : read.groups) names.push_back(group.name);
+    for (const DressedGroups& one : dressedGroups(shape, names, w.out.scene)) {
         std::vector<std::uint32_t> faces;
-        for (std::size_t i = 0; i < read.groups.size(); ++i) {
-            if (read.groups[i].name != one->group || taken[i]) continue;
-            taken[i] = true;
-            const std::size_t end =
-                i + 1 < read.groups.size() ? read.groups[i + 1].firstFace : read.cage.faceSizes.size();
+        for (const std::size_t i : one.runs) {
+            const std::size_t end = i + 1 < names.size() ? read.groups[i + 1].firstFace : read.cage.faceSizes.size();
             for (std::size_t face = read.groups[i].firstFace; face < end; ++face)
                 faces.push_back(static_cast<std::uint32_t>(face));
         }
-        UsdPrim subset("GeomSubset", w.take(shape.name + "_" + one->group, "part"));
+        UsdPrim subset("GeomSubset", w.take(shape.name + "_" + one.group, "part"));
         subset.set("uniform token elementType", "\"face\"").set("uniform token familyName", "\"materialBind\"");
         subset.set("int[] indices", usdIndices(faces));
-        usdBind(subset, usdMaterial(dressOf(shape, w.out.scene.thing(one->reference)), w));
+        usdBind(subset, usdMaterial(dressOf(shape, one.material), w));
         prim.add(std::move(subset));
     }
 }
