@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import unittest
+from collections.abc import Iterator
 from unittest import mock
 
 import numpy as np
-from support import StageTest
+from support import HEADER, StageTest
 
-from abbe.usd import own
-from abbe.usd.files import SideFiles, Stream
+from abbe import usd
+from abbe.usd import context, own
+from abbe.usd.files import Made, SideFiles
 
 TRIANGLE = """
         int[] faceVertexCounts = [3]
@@ -73,21 +75,76 @@ class Owned(StageTest):
             self.assertEqual(quick.files, slow.files)
 
 
+class Places(StageTest):
+    def test_one_operation_is_what_usd_makes_of_it(self) -> None:
+        operations = [
+            ('double3 xformOp:translate = (1, 2, 3)', '"xformOp:translate"'),
+            ('float3 xformOp:translate = (1, 2.5, 3)', '"xformOp:translate"'),
+            ('half3 xformOp:translate = (1, 2.5, 3)', '"xformOp:translate"'),
+            ('double3 xformOp:translate.timeSamples = { 0: (1, 2, 3), 1: (4, 5, 6) }', '"xformOp:translate"'),
+            ('double3 xformOp:translate = None', '"xformOp:translate"'),
+            ('double3 xformOp:translate', '"xformOp:translate"'),
+            ('double3 xformOp:translate = (1, 2, 3)', '"!invert!xformOp:translate"'),
+            ('double3 xformOp:translate = (1, 2, 3)', '"!resetXformStack!", "xformOp:translate"'),
+            ('double3 xformOp:translate = (1, 2, 3)', ''),
+            ('double3 xformOp:translate:pivot = (1, 2, 3)', '"xformOp:translate:pivot"'),
+            ('matrix4d xformOp:transform = ((0, 2, 0, 0), (-2, 0, 0, 0), (0, 0, 2, 0), (5, 6, 7, 1))', '"xformOp:transform"'),
+            ('double xformOp:rotateY = 30', '"xformOp:rotateY"'),
+        ]  # fmt: skip
+        for operation, order in operations:
+            place = f"{operation}; uniform token[] xformOpOrder = [{order}]"
+            text = lines(f'def Xform "World" {{ float3 xformOp:scale = (1, 2, 1); uniform token[] xformOpOrder = ["xformOp:scale"]; def Mesh "m" {{ {TRIANGLE} {POINTS}; {place} }} }}')
+            quick = self.convert(text, strict=False)
+            with mock.patch.object(context, "_ALONE", ()):
+                slow = self.convert(text, strict=False)
+            self.assertEqual(quick.scene_text, slow.scene_text, operation)
+
+    def test_bounds_of_many_clouds_are_those_of_each(self) -> None:
+        random = np.random.default_rng(7)
+        clouds = [random.normal(size=(n, 3)).astype(np.float32) for n in (1, 700, context.SHORT + 1, 3, context.SHORT, 9, 2, context.SHORT - 1, 5)]
+        ends = context._ends(clouds)
+        for cloud, (low, high) in zip(clouds, ends, strict=True):
+            np.testing.assert_array_equal(low, cloud.min(axis=0))
+            np.testing.assert_array_equal(high, cloud.max(axis=0))
+
+
+class Again(StageTest):
+    def test_a_stage_that_has_changed_is_read_anew(self) -> None:
+        """Though a scene that was made of it is still there, and keeps what it read."""
+        path = self.folder / "again.usda"
+        text = HEADER + lines(f'def Xform "World" {{ def Mesh "m" {{ {TRIANGLE} {POINTS} }} }}')
+        path.write_text(text)
+        first = usd.load(path)
+        other = self.folder / "other.usda"
+        other.write_text(text.replace("(2, 0, 0)", "(7, 0, 0)"))
+        other.replace(path)
+        self.assertIn("7 0 0", usd.load(path).scene_text)
+        self.assertIn("2 0 0", first.scene_text)
+
+
 class Alike(unittest.TestCase):
     @staticmethod
-    def stream(rows: np.ndarray) -> Stream:
-        return Stream(rows.nbytes, lambda: iter([rows]), lambda size: rows[: size // 4 + 1])
+    def made(rows: np.ndarray) -> Made:
+        def pieces() -> Iterator[np.ndarray]:
+            piece = np.empty(1024, np.float32)  # the same one for all of them
+            for block in rows.reshape(-1, 1024):
+                piece[:] = block
+                yield piece
+
+        return Made(rows.nbytes, float(rows[0]), pieces)
 
     def test_equal_ones_are_one_file(self) -> None:
         rows = np.arange(4096, dtype=np.float32)
         other = rows.copy()
         other[-1] = 0  # alike but for the end
         files = SideFiles()
-        names = [files.add("a", "ply", [b"head", self.stream(r)]).path for r in (rows, rows.copy(), other, rows.copy(), other.copy(), rows + 1)]
+        names = [files.add("a", "ply", self.made(r)).path for r in (rows, rows.copy(), other, rows.copy(), other.copy(), rows + 1)]
         self.assertEqual([names.index(n) for n in names], [0, 0, 2, 0, 2, 5])
-        self.assertEqual(files.content(names[0]), b"head" + rows.tobytes())
-        self.assertEqual(files.content(names[2]), b"head" + other.tobytes())
-        self.assertEqual(files.content(names[5]), b"head" + (rows + 1).tobytes())
-        # However its parts are cut.
-        self.assertEqual(files.add("b", "ply", [b"head" + rows.tobytes()]).path, names[0])
-        self.assertNotEqual(files.add("b", "obj", [b"head" + rows.tobytes()]).path, names[0])
+        self.assertEqual(files.content(names[0]), rows.tobytes())
+        self.assertEqual(files.content(names[2]), other.tobytes())
+        self.assertEqual(files.content(names[5]), (rows + 1).tobytes())
+
+    def test_equal_bytes_are_one_file_however_they_are_cut(self) -> None:
+        files = SideFiles()
+        names = [files.add("a", kind, parts).path for kind, parts in (("ply", [b"head", b"rest"]), ("ply", [b"headrest"]), ("obj", [b"headrest"]))]
+        self.assertEqual([names.index(n) for n in names], [0, 0, 2])

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from support import HEADER, StageTest
 
-from abbe.usd import files, weld
+from abbe.usd import weld
 
 
 class Welding(unittest.TestCase):
@@ -92,7 +92,7 @@ class Files(StageTest):
         }}"""
         scene = self.convert(body, HEADER, strict=False)
         (name,) = scene.files
-        self.assertEqual(type(scene._files.parts[name][1]), files.Stream)
+        self.assertEqual(len(list(scene._files.made[name].pieces())), 1 + 4 + 4)  # header, vertices, faces
         self.assert_bounds([0, 0, 0], [n, 0, n])
         content = scene.files[name]
         start = content.index(b"end_header\n") + len(b"end_header\n")

@@ -18,7 +18,8 @@ from pathlib import Path
 
 try:
     import numpy as _numpy
-    from pxr import Usd as _Usd  # noqa: F401
+    from pxr import Sdf as _Sdf
+    from pxr import Usd as _Usd
 except ImportError as _fault:
     raise ImportError(f"abbe.usd needs usd-core and numpy ({_fault}): pip install 'abbe[usd]'") from _fault
 
@@ -36,9 +37,11 @@ __all__ = ["Fate", "Options", "Remark", "Report", "Scene", "StageError", "load"]
 class Scene:
     """What a stage became: a scene in memory, with the files that it needs."""
 
-    def __init__(self, report: Report, files: SideFiles, nodes: Sequence[Node], stage: str | os.PathLike[str]) -> None:
+    def __init__(self, report: Report, files: SideFiles, nodes: Sequence[Node], path: str | os.PathLike[str], stage: _Usd.Stage) -> None:
         self.report = report
-        self._stage = Path(stage)
+        self._stage = Path(path)
+        # Arrays lie in the layers' files, mapped into memory: USD would copy all of them when the layers are closed.
+        self._layers = [_Sdf.Layer.FindOrOpen(layer.identifier) for layer in stage.GetUsedLayers()]  # those of the stage are not kept by it
         self._files = files
         self._nodes = nodes
 
@@ -50,7 +53,7 @@ class Scene:
     @property
     def files(self) -> dict[str, bytes]:
         """The files that are written beside the scene, by name."""
-        return {name: self._files.content(name) for name in self._files.parts}
+        return {name: self._files.content(name) for name in self._files.made}
 
     def search(self, path: str | os.PathLike[str]) -> list[str]:
         """Folders with files of the stage that the scene, written to `path`, may read only if it is told so: by `--search`, or by
@@ -65,7 +68,7 @@ class Scene:
         target = Path(path)
         folder = target.parent / f"{target.stem}-files"
         if not force:
-            for there in (target, *([folder] if self._files.parts else [])):
+            for there in (target, *([folder] if self._files.made else [])):
                 if there.exists():
                     raise FileExistsError(f"`{there}` is there already: `--force` replaces it")
 
@@ -82,12 +85,18 @@ class Scene:
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Without the collector of cycles: a scene has none, and with many nodes it would go through all of them again and again."""
+    """Without the collector of cycles: a scene has none, and with many nodes it would go through all of them again and again.
+
+    Afterwards they count as old, as if it had gone through them and found nothing.
+    """
     was = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
+        if gc.get_freeze_count() == 0:  # else the caller's own frozen objects would be thawed
+            gc.freeze()
+            gc.unfreeze()
         if was:
             gc.enable()
 
@@ -115,4 +124,4 @@ def load(
         nodes = Converter(context).run()
     if report.errors:
         raise StageError(f"{len(report.errors)} errors", report, 3 if all(e.code == "E0401" for e in report.errors) else 1)
-    return Scene(report, context.files, nodes, path)
+    return Scene(report, context.files, nodes, path, stage)

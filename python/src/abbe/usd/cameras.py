@@ -38,7 +38,7 @@ def read_settings(ctx: Context) -> Settings:
     api = UsdRender.Settings.GetStageRenderSettings(ctx.stage)
     prim = api.GetPrim() if api else None
     if prim is None or not prim.IsValid():
-        prim = next((p for p in ctx.stage.Traverse() if p.IsA(UsdRender.Settings)), None)
+        prim = next(iter(ctx.census.all(UsdRender.Settings)), None)
     s = Settings(prim)
     if prim is None:
         return s
@@ -116,7 +116,7 @@ def _read_product(ctx: Context, product: Usd.Prim, s: Settings) -> None:
 def choose_camera(ctx: Context, s: Settings) -> Usd.Prim | None:
     """The camera that is rendered: that of the options, of the settings, else the first one."""
     wanted = ctx.options.camera or s.camera
-    cameras = [p for p in ctx.stage.Traverse() if p.IsA(UsdGeom.Camera)]  # not those in instances: there may be many
+    cameras = ctx.census.all(UsdGeom.Camera)
     if not wanted:
         return cameras[0] if cameras else None
     path = "/" + wanted.strip("/")  # cameras of the scene are called by it without the slash
@@ -188,7 +188,7 @@ def _conformed(h: float, v: float, aspect: float, policy: str) -> tuple[float, f
 
 def write_cameras(ctx: Context, s: Settings, chosen: Usd.Prim | None, places: dict[str, Place]) -> list[Node]:
     """All cameras, the one that is rendered first, and the film; nothing where there is no camera."""
-    cameras = [p for p in ctx.stage.Traverse() if p.IsA(UsdGeom.Camera)]
+    cameras = ctx.census.all(UsdGeom.Camera)
     if chosen is not None:
         cameras = [chosen, *(p for p in cameras if p.GetPath() != chosen.GetPath())]
     if not cameras:
@@ -216,7 +216,7 @@ def _place_of(ctx: Context, prim: Usd.Prim) -> Place:
     for path in prim.GetPath().GetPrefixes():
         ancestor = ctx.stage.GetPrimAtPath(path)
         if ancestor.IsA(UsdGeom.Xformable):
-            place = Place(place, UsdGeom.Xformable(ancestor))
+            place = Place(place, ancestor)
     return place
 
 

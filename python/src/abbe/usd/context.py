@@ -18,7 +18,7 @@ except ImportError:  # before OpenUSD 25.05, which has no splines
     Ts = None
 
 from .files import SideFiles
-from .own import Owned
+from .own import Census, Owned
 from .report import Report
 from .scene_text import Node, number
 
@@ -35,6 +35,8 @@ Matrix = npt.NDArray[np.float64]  # 4 × 4, of row vectors as USD has them
 _IDENTITY: Matrix = np.eye(4)
 _IDENTITY.flags.writeable = False
 _STILL: list[list[float]] = _IDENTITY.tolist()
+_RESET = "!resetXformStack!"
+_ALONE = ("xformOp:translate", "xformOp:transform")
 _EARLIEST = Usd.TimeCode.EarliestTime()
 
 
@@ -83,20 +85,43 @@ def matrix_of(m: Gf.Matrix4d) -> Matrix:
     return np.array(m, dtype=np.float64)
 
 
+def _alone(operation: Usd.Attribute) -> Matrix | None:
+    """The map of the only operation of a prim, one that moves it or is a matrix; None where that takes more than a look.
+
+    Most prims have no more, and USD takes twice as long to put one operation together as to state it.
+    """
+    if operation.ValueMightBeTimeVarying():
+        return None
+    value = operation.Get()
+    if isinstance(value, Gf.Matrix4d):
+        return matrix_of(value)
+    if not isinstance(value, (Gf.Vec3d, Gf.Vec3f)):
+        return None
+    still = _IDENTITY.copy()
+    still[3, :3] = value
+    return still
+
+
 class Place:
     """Where a prim stands: its own operations and those of what holds it, at any time."""
 
     __slots__ = ("_cache", "_fixed", "_parent", "_xformable", "samples")
 
-    def __init__(self, parent: Place | None, xformable: Any = None, fixed: Matrix | None = None) -> None:
+    def __init__(self, parent: Place | None, prim: Usd.Prim | None = None, fixed: Matrix | None = None) -> None:
+        """`prim` is one that can be placed."""
         self._parent = parent
         self._xformable = None
         self._fixed = _IDENTITY if fixed is None else fixed
         self._cache: dict[float, Matrix] = {}
         self.samples: list[float] = parent.samples if parent else []
-        if xformable is None or not xformable.GetXformOpOrderAttr().HasAuthoredValue():
+        order = None if prim is None else prim.GetAttribute("xformOpOrder").Get()
+        if not order:
             return
-        if xformable.GetResetXformStack():
+        if len(order) == 1 and order[0] in _ALONE and (fixed := _alone(prim.GetAttribute(order[0]))) is not None:
+            self._fixed = fixed
+            return
+        xformable = UsdGeom.Xformable(prim)
+        if _RESET in order:
             while self._parent is not None and self._parent._parent is not None:
                 self._parent = self._parent._parent
             self.samples = []
@@ -159,8 +184,9 @@ class Context:
         self.lit = False  # the scene, by a light
         self.emits = False
         self.owned = Owned(stage)
+        self.census = Census(stage)
         self._bounds = empty_bounds()
-        self._grown: list[tuple[npt.NDArray[Any], Matrix]] = []  # ends of boxes, and where they stand, that the bounds have not yet
+        self._grown: list[tuple[npt.NDArray[Any], Matrix]] = []  # points, and where they stand, that the bounds have not yet
         self._names: dict[str, set[str]] = {}
 
     def _choose_unit(self) -> None:
@@ -193,18 +219,14 @@ class Context:
 
     def grow(self, points: npt.NDArray[Any], place: Place) -> None:
         """Counts points into the bounds of the scene, for a camera that shows all of it."""
-        if not len(points):
-            return
-        if len(points) < SHORT:
-            points = np.ascontiguousarray(points.T).T  # along rows in order reductions are four times as fast
-        ends = np.concatenate([np.minimum.reduce(points, axis=0), np.maximum.reduce(points, axis=0)])
-        self._grown.append((ends, place.at(self.times.first)))
+        if len(points):
+            self._grown.append((points, place.at(self.times.first)))
 
     @property
     def bounds(self) -> Matrix:
         """The least and the greatest corner of what was counted."""
         if self._grown:
-            ends = np.stack([e for e, _ in self._grown]).reshape(-1, 2, 3)
+            ends = _ends([points for points, _ in self._grown])
             corners = np.ones((len(ends), 8, 4))
             corners[:, :, :3] = ends[:, _CORNERS, (0, 1, 2)]
             world = (corners @ np.stack([m for _, m in self._grown]))[:, :, :3].reshape(-1, 3)
@@ -223,6 +245,34 @@ class Context:
 
 def empty_bounds() -> Matrix:
     return np.array([[math.inf] * 3, [-math.inf] * 3])
+
+
+def _ends(clouds: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """The least and the greatest corner of each cloud of points. Small ones are done together, along rows in order: seven times as fast."""
+    ends = np.empty((len(clouds), 2, 3))
+    batch: list[int] = []
+
+    def finish() -> None:
+        if not batch:
+            return
+        rows = np.ascontiguousarray(np.concatenate([clouds[i] for i in batch]).T)
+        starts = np.cumsum([0, *(len(clouds[i]) for i in batch[:-1])])
+        ends[batch, 0] = np.minimum.reduceat(rows, starts, axis=1).T
+        ends[batch, 1] = np.maximum.reduceat(rows, starts, axis=1).T
+        batch.clear()
+
+    size = 0
+    for i, points in enumerate(clouds):
+        if len(points) > SHORT:
+            ends[i] = np.minimum.reduce(points, axis=0), np.maximum.reduce(points, axis=0)
+            continue
+        batch.append(i)
+        size += len(points)
+        if size > SHORT:
+            finish()
+            size = 0
+    finish()
+    return ends
 
 
 def is_finite(m: Matrix) -> bool:
@@ -274,7 +324,7 @@ def write_transform(ctx: Context, node: Node, place: Place, prim: Any, before: M
         keys = list(_refined(place, keys))[:MAX_KEYS]
     for time in keys:
         m: list[list[float]] = (place.at(time) if before is None else before @ place.at(time)).tolist()
-        if not all(math.isfinite(x) for row in m for x in row):
+        if not all(map(math.isfinite, itertools.chain.from_iterable(m))):
             ctx.report.error("E0802", prim, "its transform is not finite", "look at its xformOps")
             return False
         if abs(_determinant(m)) < 1e-30:

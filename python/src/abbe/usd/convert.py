@@ -24,9 +24,10 @@ from .volumes import convert_volume
 MAX_LEVELS = 32  # of objects in objects
 SILENT = ("", "Xform", "Scope", "GeomSubset", "Material", "Shader", "NodeGraph", "SkelRoot", "Skeleton", "SkelAnimation",
           "BlendShape", "RenderSettings", "RenderProduct", "RenderVar", "Camera", "OpenVDBAsset", "Field3DAsset", "Model")  # fmt: skip
+_PLACED = ("Mesh", "Xform")  # the most frequent types of what stands somewhere
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(slots=True)
 class Visit:
     prim: Usd.Prim
     place: Place
@@ -90,7 +91,7 @@ class Converter:
     def _bake_skins(self) -> None:
         """Skinned meshes become meshes with samples of points, in the session of the stage."""
         ctx = self.ctx
-        roots = [p for p in ctx.stage.Traverse() if p.IsA(UsdSkel.Root)]
+        roots = ctx.census.all(UsdSkel.Root)
         if not roots:
             return
         target = ctx.stage.GetEditTarget()
@@ -102,10 +103,9 @@ class Converter:
         ctx.stage.SetEditTarget(target)
 
     def _find_geometry_lights(self) -> None:
-        for prim in self.ctx.stage.Traverse():
-            if prim.GetTypeName() == "GeometryLight":
-                for target in UsdLux.GeometryLight(prim).GetGeometryRel().GetForwardedTargets():
-                    self._geometry_lights[str(target)] = prim
+        for prim in self.ctx.census.all(UsdLux.GeometryLight):
+            for target in UsdLux.GeometryLight(prim).GetGeometryRel().GetForwardedTargets():
+                self._geometry_lights[str(target)] = prim
 
     def find(self, visits: list[Visit]) -> Found:
         """Goes through all that is shown. No recursion: stages may be deep."""
@@ -117,8 +117,8 @@ class Converter:
             visit.stated = stated = Prim(self.ctx.owned, prim)
             if not self._is_shown(visit):
                 continue
-            if "xformOpOrder" in stated.names and prim.IsA(UsdGeom.Xformable):
-                visit.place = Place(visit.place, UsdGeom.Xformable(prim))
+            if "xformOpOrder" in stated.names and (stated.kind in _PLACED or prim.IsA(UsdGeom.Xformable)):
+                visit.place = Place(visit.place, prim)
             if prim.IsInstance():
                 found.instances.append(visit)
                 continue

@@ -8,7 +8,7 @@ import io
 import itertools
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Union
 
@@ -20,18 +20,18 @@ Buffer = Union[bytes, memoryview, "np.ndarray"]
 
 
 @dataclasses.dataclass(frozen=True)
-class Stream:
-    """Bytes that are made when they are written, some at a time: those of a large mesh need not lie in memory."""
+class Made:
+    """A file that is made when it is written, some bytes at a time: a large one need not lie in memory."""
 
-    nbytes: int
-    blocks: Callable[[], Iterator[Buffer]]
-    first: Callable[[int], Buffer]  # so many bytes from the start on, or more; fewer only where there are no more
+    size: int  # bytes, about
+    like: Hashable  # what files have in common whose bytes are the same; told without making them
+    pieces: Callable[[], Iterator[Buffer]]  # all bytes in order; a piece holds until the next one is asked for
 
 
-Part = Union[bytes, memoryview, "np.ndarray", Stream]
 _COMPARED = 8 << 20  # bytes; larger files are not compared with those that are there
 _numbers = itertools.count()
-_LIKE = 512  # bytes, by whose start files are told apart before they are made
+_UNWANTED = re.compile(r"[^A-Za-z0-9._-]+")
+_START = 512  # bytes that tell files apart
 
 
 def as_bytes(part: Buffer) -> bytes | memoryview:
@@ -39,25 +39,19 @@ def as_bytes(part: Buffer) -> bytes | memoryview:
     return np.ascontiguousarray(part).reshape(-1).view(np.uint8).data if isinstance(part, np.ndarray) else part
 
 
-def size_of(part: Part) -> int:
-    return len(part) if isinstance(part, bytes) else part.nbytes
+def whole(pieces: Iterable[Buffer]) -> bytes:
+    return b"".join(bytes(as_bytes(piece)) for piece in pieces)  # copies, as the next piece may take the place of the last
 
 
-def pieces(parts: Iterable[Part]) -> Iterator[bytes | memoryview]:
-    """All bytes in order. A piece holds until the next one is asked for."""
+def at_hand(parts: Sequence[Buffer]) -> Made:
+    """A file of bytes that are there."""
+    size = sum(len(part) if isinstance(part, bytes) else part.nbytes for part in parts)
+    start = b""
     for part in parts:
-        for piece in part.blocks() if isinstance(part, Stream) else (part,):
-            yield as_bytes(piece)
-
-
-def start_of(parts: Iterable[Part]) -> bytes:
-    """The first bytes, without making all of them."""
-    found = b""
-    for part in parts:
-        found += as_bytes(part.first(_LIKE - len(found)) if isinstance(part, Stream) else part)
-        if len(found) >= _LIKE:
+        start += as_bytes(part)[: _START - len(start)]
+        if len(start) >= _START:
             break
-    return found[:_LIKE]
+    return Made(size, (size, start), lambda: iter(parts))
 
 
 def _new_file(path: Path) -> tuple[int, str]:
@@ -74,13 +68,13 @@ def _write_all(stream: io.RawIOBase | io.FileIO, piece: bytes | memoryview) -> N
         rest = rest[stream.write(rest) or 0 :]
 
 
-def write_atomically(path: Path, parts: Iterable[Part]) -> None:
+def write_atomically(path: Path, parts: Iterable[Buffer]) -> None:
     """Writes a file under another name and renames it, so that nobody ever reads half of it. Raises OSError."""
     descriptor, name = _new_file(path)
     try:
         with os.fdopen(descriptor, "wb", buffering=0) as stream:
-            for piece in pieces(parts):
-                _write_all(stream, piece)
+            for part in parts:
+                _write_all(stream, as_bytes(part))
         os.replace(name, path)
     except BaseException:
         with contextlib.suppress(OSError):
@@ -89,57 +83,57 @@ def write_atomically(path: Path, parts: Iterable[Part]) -> None:
 
 
 class SideFiles:
-    """Files in memory until the scene is written. Equal ones are one file."""
+    """Files that are kept until the scene is written. Equal ones are one file."""
 
     def __init__(self) -> None:
-        self.parts: dict[str, list[Part]] = {}
-        self._alike: dict[tuple[str, int, bytes], list[str]] = {}  # files by extension, size and start
+        self.made: dict[str, Made] = {}
+        self._alike: dict[tuple[str, Hashable], list[str]] = {}  # files by extension and what they are like
         self._by_content: dict[tuple[str, bytes], str] = {}  # of those that are alike
         self._stems: dict[str, int] = {}
 
-    def add(self, stem: str, extension: str, parts: Sequence[Part]) -> FileRef:
+    def add(self, stem: str, extension: str, content: Sequence[Buffer] | Made) -> FileRef:
         """A file named after `stem`, as far as file systems like it."""
-        size = sum(size_of(part) for part in parts)
-        if size > _COMPARED:
-            name = self._free_name(stem, extension)
-            self.parts[name] = list(parts)
-            return FileRef(name, own=True)
-        alike = self._alike.setdefault((extension, size, start_of(parts)), [])
-        if not alike:
-            name = self._free_name(stem, extension)
-            self.parts[name] = list(parts)
-            alike.append(name)
-            return FileRef(name, own=True)
+        made = content if isinstance(content, Made) else at_hand(content)
+        alike = self._alike.setdefault((extension, made.like), []) if made.size <= _COMPARED else []
+        if alike:
+            return self._add_alike(stem, extension, made, alike)
+        name = self._free_name(stem, extension)
+        self.made[name] = made
+        alike.append(name)
+        return FileRef(name, own=True)
+
+    def _add_alike(self, stem: str, extension: str, made: Made, alike: list[str]) -> FileRef:
+        """A file that may have the bytes of one that is there."""
         if len(alike) == 1:
-            self._make(alike[0], extension)
-        content = (extension, b"".join(pieces(parts)))
+            self._by_content[(extension, self._keep(alike[0], self.made[alike[0]]))] = alike[0]
+        content = (extension, whole(made.pieces()))
         if content not in self._by_content:
             name = self._by_content[content] = self._free_name(stem, extension)
-            self.parts[name] = [content[1]]
+            self.made[name] = at_hand([content[1]])
             alike.append(name)
         return FileRef(self._by_content[content], own=True)
 
-    def _make(self, name: str, extension: str) -> None:
-        """A file as its bytes, to compare others with it."""
-        whole = self.content(name)
-        self.parts[name] = [whole]
-        self._by_content[(extension, whole)] = name
+    def _keep(self, name: str, made: Made) -> bytes:
+        """Makes a file, to compare others with it."""
+        content = whole(made.pieces())
+        self.made[name] = at_hand([content])
+        return content
 
     def content(self, name: str) -> bytes:
-        return b"".join(bytes(piece) for piece in pieces(self.parts[name]))
+        return whole(self.made[name].pieces())
 
     def _free_name(self, stem: str, extension: str) -> str:
-        plain = re.sub(r"[^A-Za-z0-9._-]+", "_", stem).strip("._") or "file"
+        plain = _UNWANTED.sub("_", stem).strip("._") or "file"
         plain = plain[-80:]
         taken = self._stems.get(plain.lower(), 0)
         self._stems[plain.lower()] = taken + 1
         name = f"{plain}-{taken + 1}.{extension}" if taken else f"{plain}.{extension}"
-        return name if name not in self.parts else self._free_name(stem + "_", extension)
+        return name if name not in self.made else self._free_name(stem + "_", extension)
 
     def write(self, folder: Path) -> None:
         """Writes all files into `folder`, which is made. Raises OSError."""
-        if not self.parts:
+        if not self.made:
             return
         folder.mkdir(parents=True, exist_ok=True)
-        for name, parts in self.parts.items():
-            write_atomically(folder / name, parts)
+        for name, made in self.made.items():
+            write_atomically(folder / name, made.pieces())

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,7 @@ from pxr import Usd, UsdGeom
 
 from . import ply
 from .context import Context, as_float
+from .files import Buffer, Made
 from .materials import Look
 from .own import Prim, Stated
 from .scene_text import Node, number
@@ -19,9 +21,12 @@ from .weld import Primvar, blocks, weld
 
 INLINE = 24  # points of a mesh that is written into the scene
 LEAST_CORNERS = 3
+LIKE = 40  # points that tell meshes of equal size apart
 FEW = 1 << 14  # numbers that fit into the cache
 
 Array = npt.NDArray[Any]
+# The vertex of each corner; the point of each vertex, and a corner of it, unless vertices are points.
+Vertices = tuple[Array, Union[Array, None], Union[Array, None]]
 
 
 @dataclasses.dataclass
@@ -312,8 +317,7 @@ def part(surface: Surface, faces: Array) -> Surface:
     return Surface(surface.stated, topology, surface.points, taken(surface.uvs), normals, attributes, surface.face_numbers()[faces])
 
 
-def vertices(surface: Surface) -> tuple[Array, Array | None, Array | None]:
-    """The vertex of each corner; the point of each vertex, and a corner of it, unless vertices are points."""
+def vertices(surface: Surface) -> Vertices:
     topology = surface.topology
     split = surface.by_corner()
     if split:
@@ -352,25 +356,47 @@ def _columns(surface: Surface, key: int, point: Array | None, corner: Array | No
     return groups
 
 
+def _pieces(surface: Surface, key: int, split: Vertices) -> Iterator[Buffer]:
+    """The file of a mesh at one of its keys."""
+    corners, point, corner = split
+    return ply.mesh(_columns(surface, key, point, corner), surface.topology.counts, corners, surface.topology.size)
+
+
+def _file(surface: Surface, key: int, split: Vertices | None) -> Made:
+    """The file of a mesh at one of its keys. Which corners share a vertex is found when it is written, unless it is `split` already."""
+    points, corners = surface.points[key][1], surface.topology.corners
+    like = (len(points), len(corners), points[:LIKE].tobytes())
+    return Made(32 * len(points) + 4 * len(corners), like, lambda: _pieces(surface, key, split or vertices(surface)))
+
+
 def write_polygons(ctx: Context, surface: Surface, stem: str, node: Node, keep_points: bool = False) -> None:
     """A polygon mesh: in the scene if it is small, else as PLY beside it; one file for each key."""
-    corners, point, corner = (surface.topology.corners, None, None) if keep_points else vertices(surface)
-    small = len(surface.points[0][1] if point is None else point) <= INLINE and not surface.normals
+    points, corners = surface.points[0][1], surface.topology.corners
+    split: Vertices | None = (corners, None, None) if keep_points else None
+    if not surface.normals and min(len(points), len(corners)) <= INLINE:
+        split = split or vertices(surface)
+        if len(points if split[1] is None else split[1]) <= INLINE:
+            _write_small(ctx, surface, split, node)
+            return
+    if len(surface.points) > 1:
+        split = split or vertices(surface)  # once for all keys
     for key, (time, _) in enumerate(surface.points):
-        groups = _columns(surface, key, point, corner)
-        at = node if len(surface.points) == 1 else node.child("at", number(ctx.times.seconds(time)), "s")
-        if small:
-            every = slice(0, INLINE)
-            at.rows("points", _shortest(groups[0][2](every)))
-            if key == 0:
-                _write_inline(surface, corners, {names[0]: rows(every) for names, _, rows in groups}, node)
-            continue
-        parts = ply.mesh(groups, surface.topology.counts, corners, surface.topology.size)
-        ref = ctx.files.add(stem if key == 0 else f"{stem}.{key}", "ply", parts)
-        if at is node:
+        ref = ctx.files.add(stem if key == 0 else f"{stem}.{key}", "ply", _file(surface, key, split))
+        if len(surface.points) == 1:
             node.file(ref)
         else:
-            at.child("file").file(ref)
+            node.child("at", number(ctx.times.seconds(time)), "s").child("file").file(ref)
+
+
+def _write_small(ctx: Context, surface: Surface, split: Vertices, node: Node) -> None:
+    """A mesh that stands in the scene itself."""
+    every = slice(0, INLINE)
+    for key, (time, _) in enumerate(surface.points):
+        groups = _columns(surface, key, split[1], split[2])
+        at = node if len(surface.points) == 1 else node.child("at", number(ctx.times.seconds(time)), "s")
+        at.rows("points", _shortest(groups[0][2](every)))
+        if key == 0:
+            _write_inline(surface, split[0], {names[0]: rows(every) for names, _, rows in groups}, node)
 
 
 def _shortest(rows: ply.Floats) -> list[list[float]]:

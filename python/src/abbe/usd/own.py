@@ -6,6 +6,7 @@ the names of what is authored saves the others.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Container
 from typing import Any, NamedTuple
 
@@ -16,6 +17,9 @@ _PLAIN_TYPES = frozenset({"Mesh", "Xform", "Scope", ""})
 _PLAIN_SCHEMAS = frozenset({"MaterialBindingAPI", "SkelBindingAPI", "GeomModelAPI", "MotionAPI", "VisibilityAPI"})
 
 
+_code = functools.lru_cache(maxsize=1 << 12)(Usd.TimeCode)  # to convert a number at each question takes half a microsecond
+
+
 class _Everything:
     """Of a prim that has to be asked."""
 
@@ -24,6 +28,19 @@ class _Everything:
 
 
 _EVERYTHING = _Everything()
+
+
+class Census:
+    """The prims of a stage by their types: one way through it instead of one for each question. Not those in instances."""
+
+    def __init__(self, stage: Usd.Stage) -> None:
+        self._of_type: dict[str, list[Usd.Prim]] = {}
+        for prim in stage.Traverse():
+            self._of_type.setdefault(prim.GetTypeName(), []).append(prim)
+
+    def all(self, schema: Any) -> list[Usd.Prim]:
+        """Those that are of a schema or of one that is made from it; in the order of the stage within a type."""
+        return [prim for prims in self._of_type.values() if prims[0].IsA(schema) for prim in prims]
 
 
 class Owned:
@@ -79,9 +96,9 @@ class Prim:
         """Whether nothing is applied to it that makes it more than its type says, such as a light."""
         return self.names is not _EVERYTHING
 
-    def value(self, name: str, time: Usd.TimeCode, otherwise: Any = None) -> Any:
+    def value(self, name: str, time: float | Usd.TimeCode, otherwise: Any = None) -> Any:
         """The value of an attribute; `otherwise`, which is that of the schema, where there is no opinion."""
-        return self.prim.GetAttribute(name).Get(time) if name in self.names else otherwise
+        return self.prim.GetAttribute(name).Get(_code(time)) if name in self.names else otherwise
 
     def primvar(self, name: str, time: float) -> Stated | None:
         """The primvar of this prim or of what holds it, at a time; None where there is none with a value."""
@@ -94,7 +111,7 @@ class Prim:
                 return None
         elif self.names is not _EVERYTHING and f"{full}:indices" not in self.names:
             attribute = self.prim.GetAttribute(full)
-            values = attribute.Get(time)
+            values = attribute.Get(_code(time))
             if values is not None:
                 return Stated(values, None, str(attribute.GetMetadata("interpolation") or UsdGeom.Tokens.constant))
         found = UsdGeom.PrimvarsAPI(self.prim).FindPrimvarWithInheritance(full)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .files import Buffer, Part, Stream
+from .files import Buffer
 from .weld import BLOCK, blocks
 
 Floats = npt.NDArray[np.float32]
@@ -44,25 +44,16 @@ def strands(columns: Sequence[tuple[str, npt.NDArray[np.generic]]], counts: Ints
     return [_header(len(columns[0][1]), kinds, tail), _table(columns).tobytes(), counts.astype("<u4").tobytes()]
 
 
-def _even_faces(corners: Ints, size: int) -> Stream:
+def _even_faces(corners: Ints, size: int) -> Iterator[Buffer]:
     """Faces that have as many corners each, up to 255."""
     kind = np.dtype([("length", "u1"), ("corners", "<i4", (size,))])
     faces = np.ascontiguousarray(corners, "<i4").reshape(-1, size)
-
-    def made() -> Iterator[Buffer]:
-        rows = np.empty(min(len(faces), BLOCK), kind)
-        rows["length"] = size
-        for block in blocks(len(faces)):
-            some = rows[: block.stop - block.start]
-            some["corners"] = faces[block]
-            yield some
-
-    def first(size: int) -> Buffer:
-        rows = np.empty(min(len(faces), size // kind.itemsize + 1), kind)
-        rows["length"], rows["corners"] = faces.shape[1], faces[: len(rows)]
-        return rows
-
-    return Stream(len(faces) * kind.itemsize, made, first)
+    rows = np.empty(min(len(faces), BLOCK), kind)
+    rows["length"] = size
+    for block in blocks(len(faces)):
+        some = rows[: block.stop - block.start]
+        some["corners"] = faces[block]
+        yield some
 
 
 def _face_bytes(counts: Ints, corners: Ints) -> tuple[str, npt.NDArray[np.uint8]]:
@@ -84,33 +75,29 @@ def _face_bytes(counts: Ints, corners: Ints) -> tuple[str, npt.NDArray[np.uint8]
     return "uchar", out
 
 
-def mesh(groups: Sequence[Group], counts: Ints, corners: Ints, size: int | None) -> list[Part]:
-    """A polygon mesh: x y z and other properties of its vertices, faces by the number and the indices of their corners.
+def mesh(groups: Sequence[Group], counts: Ints, corners: Ints, size: int | None) -> Iterator[Buffer]:
+    """A polygon mesh, some bytes at a time: x y z and other properties of its vertices, faces by the number and the indices of their
+    corners.
 
     `size`: corners of each face, where all have as many.
     """
     names = [name for group in groups for name in group[0]]
     count = groups[0][1]
-
-    def fill(rows: Floats, block: slice) -> Floats:
+    even = size if size is not None and size <= 255 else None
+    length, faces = ("uchar", None) if even is not None else _face_bytes(counts, corners)
+    tail = [f"element face {len(counts)}", f"property list {length} int vertex_indices"]
+    yield _header(count, [(name, "float") for name in names], tail)
+    rows = np.empty((min(count, BLOCK), len(names)), "<f4")
+    for block in blocks(count):
         some, at = rows[: block.stop - block.start], 0
         for own, _, values in groups:
             some[:, at : at + len(own)] = values(block)
             at += len(own)
-        return some
-
-    def vertices() -> Iterator[Buffer]:
-        rows = np.empty((min(count, BLOCK), len(names)), "<f4")
-        for block in blocks(count):
-            yield fill(rows, block)
-
-    def first(size: int) -> Buffer:
-        some = slice(0, min(count, size // (4 * len(names)) + 1))
-        return fill(np.empty((some.stop, len(names)), "<f4"), some)
-
-    length, faces = ("uchar", _even_faces(corners, size)) if size is not None and size <= 255 else _face_bytes(counts, corners)
-    tail = [f"element face {len(counts)}", f"property list {length} int vertex_indices"]
-    return [_header(count, [(name, "float") for name in names], tail), Stream(4 * count * len(names), vertices, first), faces]
+        yield some
+    if even is not None:
+        yield from _even_faces(corners, even)
+    elif faces is not None:
+        yield faces
 
 
 def _lines(prefix: str, rows: npt.NDArray[np.generic]) -> str:

@@ -12,6 +12,7 @@ from pxr import Usd, UsdGeom
 
 from . import ply
 from .context import Context, Place, as_float, write_transform
+from .files import whole
 from .materials import Look
 from .scene_text import Node
 
@@ -118,7 +119,7 @@ def _capsule(ctx: Context, prim: Usd.Prim, node: Node) -> float | None:
     corners: npt.NDArray[np.int32] = np.array(faces, np.int32).reshape(-1)
     rows = np.hstack([points, normals])
     groups: list[ply.Group] = [(["x", "y", "z", "nx", "ny", "nz"], len(rows), lambda b: rows[b])]
-    ref = ctx.files.add(str(prim.GetPath()), "ply", ply.mesh(groups, np.full(len(faces), 4, np.int32), corners, 4))
+    ref = ctx.files.add(str(prim.GetPath()), "ply", [whole(ply.mesh(groups, np.full(len(faces), 4, np.int32), corners, 4))])
     node.word("mesh").file(ref)
     node.remark(
         ctx.report.approximated(prim, "a capsule", f"a smooth mesh of {len(faces)} faces, within {1 - math.cos(math.pi / AROUND):.1%} of its radius")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import gc
 import os
 import re
 import sys
@@ -45,12 +44,13 @@ def open_stage(path: str, options: Options, report: Report) -> Usd.Stage:
         near = difflib.get_close_matches(os.path.basename(path), names, 1, 0.5)
         report.error("E0401", None, f"there is no file `{path}`", f"did you mean `{near[0]}`?" if near else "look at its name")
         raise StageError("no file", report, 3)
-    if Sdf.Layer.Find(path):
-        gc.collect()  # of an earlier stage of this file, so that it is read anew if nobody holds it
+    is_known = bool(Sdf.Layer.Find(path))  # somebody holds it
     said: list[str] = []
     with quiet():
         try:
             stage = Usd.Stage.Open(path)
+            if stage is not None and is_known:
+                stage.Reload()  # what has changed in files since then
         except Tf.ErrorException as fault:
             stage = None
             said += [str(e.commentary) for e in fault.args]
