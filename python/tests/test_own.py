@@ -93,7 +93,9 @@ class Places(StageTest):
         ]  # fmt: skip
         for operation, order in operations:
             place = f"{operation}; uniform token[] xformOpOrder = [{order}]"
-            text = lines(f'def Xform "World" {{ float3 xformOp:scale = (1, 2, 1); uniform token[] xformOpOrder = ["xformOp:scale"]; def Mesh "m" {{ {TRIANGLE} {POINTS}; {place} }} }}')
+            text = lines(
+                f'def Xform "World" {{ float3 xformOp:scale = (1, 2, 1); uniform token[] xformOpOrder = ["xformOp:scale"]; def Mesh "m" {{ {TRIANGLE} {POINTS}; {place} }} }}'
+            )
             quick = self.convert(text, strict=False)
             with mock.patch.object(context, "_ALONE", ()):
                 slow = self.convert(text, strict=False)

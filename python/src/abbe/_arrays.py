@@ -238,6 +238,7 @@ def _place(properties: Mapping[str, Any], counts: tuple[int, ...]) -> tuple[floa
         lower, upper = _three("bounds", bounds[0]), _three("bounds", bounds[1])
         size = (upper - lower) / counts
     else:
+        assert voxel is not None
         lower = _three("origin", (0, 0, 0) if origin is None else origin)
         size = _three("voxel_size", (voxel,) * 3 if np.ndim(voxel) == 0 else voxel)
     if not (size > 0).all():

@@ -114,7 +114,9 @@ class Place:
         self._fixed = _IDENTITY if fixed is None else fixed
         self._cache: dict[float, Matrix] = {}
         self.samples: list[float] = parent.samples if parent else []
-        order = None if prim is None else prim.GetAttribute("xformOpOrder").Get()
+        if prim is None:
+            return
+        order = prim.GetAttribute("xformOpOrder").Get()
         if not order:
             return
         if len(order) == 1 and order[0] in _ALONE and (fixed := _alone(prim.GetAttribute(order[0]))) is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +26,7 @@ FEW = 1 << 14  # numbers that fit into the cache
 
 Array = npt.NDArray[Any]
 # The vertex of each corner; the point of each vertex, and a corner of it, unless vertices are points.
-Vertices = tuple[Array, Union[Array, None], Union[Array, None]]
+Vertices = tuple[Array, Array | None, Array | None]
 
 
 @dataclasses.dataclass
