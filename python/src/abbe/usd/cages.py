@@ -76,10 +76,12 @@ def _corners(mesh: UsdGeom.Mesh, time: float, point_count: int) -> list[tuple[in
 def _holes(mesh: UsdGeom.Mesh, time: float, surface: Surface) -> list[int]:
     """Holes as numbers of the faces that are left."""
     holes = np.asarray(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
+    if not len(holes):
+        return []
     count = len(mesh.GetFaceVertexCountsAttr().Get(time) or [])
-    if len(holes) and (int(holes.min()) < 0 or int(holes.max()) >= count):
+    if int(holes.min()) < 0 or int(holes.max()) >= count:
         raise BadMesh(f"holeIndices names face {int(holes.max())}, but there are {count}")
-    return np.flatnonzero(np.isin(surface.face_numbers(), holes)).tolist() if len(holes) else []
+    return np.flatnonzero(np.isin(surface.face_numbers(), holes)).tolist()
 
 
 def _scheme(ctx: Context, mesh: UsdGeom.Mesh, surface: Surface, scheme: str) -> str:
@@ -118,9 +120,9 @@ def seamless(surface: Surface, primvar: Primvar) -> bool:
 
 def _groups(ctx: Context, surface: Surface, subsets: list[tuple[UsdGeom.Subset, Array, Look]], node: Node) -> list[tuple[str, Array]]:
     """Faces by material, as groups of the file; the materials of all but the first are written."""
-    numbers = surface.face_numbers()
     if not subsets:
-        return [("", np.arange(len(numbers)))]
+        return [("", np.arange(len(surface.topology.counts)))]
+    numbers = surface.face_numbers()
     owner = np.full(len(numbers), -1, np.int64)
     for i, (_, faces, _) in enumerate(subsets):
         owner[np.isin(numbers, faces)] = i

@@ -249,8 +249,17 @@ def empty_bounds() -> Matrix:
     return np.array([[math.inf] * 3, [-math.inf] * 3])
 
 
+def _ends_of_blocks(points: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    blocks = [np.ascontiguousarray(points[a : a + SHORT].T) for a in range(0, len(points), SHORT)]
+    low, high = (np.stack([f.reduce(rows, axis=1) for rows in blocks]) for f in (np.minimum, np.maximum))
+    return low.min(axis=0), high.max(axis=0)
+
+
 def _ends(clouds: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """The least and the greatest corner of each cloud of points. Small ones are done together, along rows in order: seven times as fast."""
+    """The least and the greatest corner of each cloud of points: of small ones together, of large ones by blocks that fit into the cache.
+
+    Coordinates are brought into rows of their own first, along which reductions are several times as fast.
+    """
     ends = np.empty((len(clouds), 2, 3))
     batch: list[int] = []
 
@@ -266,7 +275,7 @@ def _ends(clouds: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
     size = 0
     for i, points in enumerate(clouds):
         if len(points) > SHORT:
-            ends[i] = np.minimum.reduce(points, axis=0), np.maximum.reduce(points, axis=0)
+            ends[i] = _ends_of_blocks(points)
             continue
         batch.append(i)
         size += len(points)
