@@ -15,6 +15,10 @@ trap '[[ $BASHPID != "$$" ]] || rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 faults=0
 unset NO_COLOR
+# Sanitizers make programs several times slower and larger.
+sanitized() { grep -q -e asan -e tsan <<<"$program"; }
+patience=300 # seconds
+! sanitized || patience=2400
 
 fault() {
     printf 'FAULT: %s\n' "$*"
@@ -25,7 +29,7 @@ fault() {
 expect() {
     local wanted=$1 code
     shift
-    timeout 300 "$program" "$@" >out 2>err
+    timeout "$patience" "$program" "$@" >out 2>err
     code=$?
     [[ $code -eq $wanted ]] && return 0
     fault "abbe $* ended with $code instead of $wanted"

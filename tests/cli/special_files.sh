@@ -132,7 +132,7 @@ left_at_once() {
     kill -TERM "$job" || fault "abbe $* has ended by itself: $(cat err)"
     ended_with 143
     awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { exit !(b - a < 1.5) }' || fault "abbe $*: left from $began to $EPOCHREALTIME"
-    grep -q -e asan -e tsan <<<"$program" || ((${peak:-0} > 0 && peak < most)) || fault "abbe $*: ${peak:-no} kB of memory"
+    sanitized || ((${peak:-0} > 0 && peak < most)) || fault "abbe $*: ${peak:-no} kB of memory"
     printf "%s: %s kB\n" "$*" "$peak"
 }
 most=524288 # kB
