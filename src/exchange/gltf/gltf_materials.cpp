@@ -226,7 +226,7 @@ void GltfSurface::writeEmission(SceneNode& node, bool open) {
     if (!emits() || strength == 0) return;
     if (use_.dark)
         return ctx_.import.leftOut(&node, span_, fmt::format("what {} emits", where_),
-                                   "it is stretched while it moves");
+                                   "it is bent, or stretched while it moves, and its area changes");
     if (open)
         return ctx_.import.leftOut(&node, span_, fmt::format("what {} emits", where_),
                                    "a surface with holes cannot emit");

@@ -14,7 +14,7 @@ struct GltfMaterial {
 // How a primitive uses its material.
 struct GltfUse {
     bool color = false, alpha = false; // it has such values at its vertices
-    bool dark = false;                 // it cannot emit, as it is stretched while it moves
+    bool dark = false;                 // it cannot emit, as it is bent, or stretched while it moves
     auto operator<=>(const GltfUse&) const = default;
 };
 

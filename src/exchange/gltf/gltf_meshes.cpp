@@ -1,4 +1,5 @@
 // The primitives of a mesh as shapes with PLY files.
+#include "exchange/gltf/gltf_bending.h"
 #include "exchange/gltf/gltf_nodes.h"
 #include "exchange/shared/ply_writer.h"
 
@@ -29,7 +30,7 @@ GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& w
     const int index = ctx_.model().nodes[static_cast<std::size_t>(pose.node)].mesh;
     const tinygltf::Mesh& mesh = ctx_.model().meshes[static_cast<std::size_t>(index)];
     Parts made;
-    warnOfBending(pose);
+    const std::vector<double> times = gltfBendingTimes(ctx_, pose.node);
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         GltfPrimitive primitive = gltfPrimitive(ctx_.document, ctx_.pose, pose.node, static_cast<int>(i));
         if (!primitive.leftOut.empty()) {
@@ -38,15 +39,18 @@ GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& w
                                 fmt::format("it has {}, which have no width in the file", primitive.leftOut));
             continue;
         }
-        dropFlat(primitive.mesh);
+        if (times.empty()) dropFlat(primitive.mesh); // else they have an area at another time
         if (primitive.mesh.triangles.empty()) continue;
         SceneNode shape("shape");
         const std::string name = ctx_.shapeNames.take(wish, fmt::format("mesh-{}", index));
         shape.name(name).word("mesh");
-        writeSurface(shape, mesh.primitives[i], primitive, dark);
+        writeSurface(shape, mesh.primitives[i], primitive, dark || !times.empty());
         const Transform toScene = primitive.skinned ? Transform{} : toBox;
         for (const Vec3& p : primitive.mesh.positions) made.box.add(toScene.point(Vec3d(p)));
-        shape.text(ctx_.import.files.write(name, "ply", binaryPly(primitive.mesh)));
+        if (times.empty())
+            shape.text(ctx_.import.files.write(name, "ply", binaryPly(primitive.mesh)));
+        else
+            writeBending(shape, name, GltfBending(ctx_, pose.node, static_cast<int>(i), primitive.mesh, times));
         writeVariants(shape, mesh.primitives[i]);
         made.shapes.push_back(std::move(shape));
     }
@@ -75,16 +79,14 @@ void GltfNodes::writeSurface(SceneNode& shape, const tinygltf::Primitive& primit
     mesh.uvs.resize(mesh.positions.size());
 }
 
-void GltfNodes::warnOfBending(const GltfNodePose& pose) {
-    const tinygltf::Node& node = ctx_.model().nodes[static_cast<std::size_t>(pose.node)];
-    bool bends = ctx_.animation.morphs(pose.node);
-    if (node.skin >= 0 && static_cast<std::size_t>(node.skin) < ctx_.model().skins.size())
-        bends |= std::ranges::any_of(ctx_.model().skins[static_cast<std::size_t>(node.skin)].joints,
-                                     [&](int joint) { return ctx_.pose.find(joint) && ctx_.animation.moves(joint); });
-    if (bends)
-        ctx_.import.approximated(nullptr, ctx_.places.of("nodes", pose.node),
-                                 fmt::format("the moving shape of {}", gltfName("node", "nodes", pose.node, node.name)),
-                                 "skins and morph targets stand still, as they are at 0 s");
+// One file, or a key for each of several.
+void GltfNodes::writeBending(SceneNode& shape, const std::string& name, GltfBending bending) {
+    std::vector<std::pair<double, std::string>> keys;
+    bending.write([&](double time, const MeshData& mesh) {
+        keys.emplace_back(time, ctx_.import.files.write(name, "ply", binaryPly(mesh)));
+    });
+    if (keys.size() == 1) return void(shape.text(keys[0].second));
+    for (const auto& [time, file] : keys) shape.child("at").number(time).word("s").child("file").text(file);
 }
 
 // Names the other materials that the file offers for the primitive.

@@ -206,7 +206,8 @@ void GltfNodes::add(const Place& at, SceneNode node) {
 
 bool GltfNodes::isShared(const GltfNodePose& pose) const {
     const tinygltf::Node& node = ctx_.model().nodes[static_cast<std::size_t>(pose.node)];
-    const bool bent = node.skin >= 0 || std::ranges::any_of(pose.weights, [](double w) { return w != 0; });
+    const bool bent = node.skin >= 0 || ctx_.animation.morphs(pose.node) ||
+                      std::ranges::any_of(pose.weights, [](double w) { return w != 0; });
     const auto uses = uses_.find(node.mesh);
     return !bent && uses != uses_.end() && uses->second > 1;
 }

@@ -8,6 +8,8 @@
 
 namespace abbe::exchange {
 
+class GltfBending;
+
 // Appends a light of KHR_lights_punctual; false where it is left out, which is said.
 bool writeGltfLight(SceneNode& light, int index, GltfContext&);
 // The light that a node refers to, or -1.
@@ -61,7 +63,7 @@ class GltfNodes {
     Parts parts(const GltfNodePose&, const std::string& wish, const Transform& toBox, bool dark);
     void writeSurface(SceneNode& shape, const tinygltf::Primitive&, GltfPrimitive&, bool dark);
     void writeVariants(SceneNode& shape, const tinygltf::Primitive&);
-    void warnOfBending(const GltfNodePose&);
+    void writeBending(SceneNode& shape, const std::string& name, GltfBending);
 
     GltfContext& ctx_;
     GltfMaterials materials_;
