@@ -103,7 +103,7 @@ void GltfBending::keep(State state) {
 }
 
 void GltfBending::write(const std::function<void(double, const MeshData&)>& key) {
-    constexpr double kOfSize = 1.0 / 2000;
+    constexpr double kOfSize = 1.0 / 1000;
     key_ = key;
     State before = at(times_.front());
     Bounds3d box;

@@ -13,7 +13,7 @@ namespace abbe::exchange {
 std::vector<double> gltfBendingTimes(const GltfContext&, int node);
 
 // A primitive at further times, as a shape deforms here: its points go straight from key to key. Between the times of
-// the file, where joints turn, keys are added until no point is farther than 1/2000 of the mesh's size from its way;
+// the file, where joints turn, keys are added until no point is farther than 1/1000 of the mesh's size from its way;
 // states that last have two keys.
 class GltfBending {
   public:

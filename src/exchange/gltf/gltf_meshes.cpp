@@ -50,7 +50,8 @@ GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& w
         if (times.empty())
             shape.text(ctx_.import.files.write(name, "ply", binaryPly(primitive.mesh)));
         else
-            writeBending(shape, name, GltfBending(ctx_, pose.node, static_cast<int>(i), primitive.mesh, times));
+            writeBending(shape, name, GltfBending(ctx_, pose.node, static_cast<int>(i), primitive.mesh, times),
+                         [&](const Vec3& p) { made.box.add(toScene.point(Vec3d(p))); });
         writeVariants(shape, mesh.primitives[i]);
         made.shapes.push_back(std::move(shape));
     }
@@ -79,10 +80,12 @@ void GltfNodes::writeSurface(SceneNode& shape, const tinygltf::Primitive& primit
     mesh.uvs.resize(mesh.positions.size());
 }
 
-// One file, or a key for each of several.
-void GltfNodes::writeBending(SceneNode& shape, const std::string& name, GltfBending bending) {
+// One file, or a key for each of several. All of their points are to be in the picture.
+void GltfNodes::writeBending(SceneNode& shape, const std::string& name, GltfBending bending,
+                             const std::function<void(const Vec3&)>& show) {
     std::vector<std::pair<double, std::string>> keys;
     bending.write([&](double time, const MeshData& mesh) {
+        std::ranges::for_each(mesh.positions, show);
         keys.emplace_back(time, ctx_.import.files.write(name, "ply", binaryPly(mesh)));
     });
     if (keys.size() == 1) return void(shape.text(keys[0].second));

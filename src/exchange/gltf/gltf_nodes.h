@@ -4,6 +4,7 @@
 #include "exchange/gltf/gltf_materials.h"
 #include "math/bounds.h"
 
+#include <functional>
 #include <optional>
 
 namespace abbe::exchange {
@@ -63,7 +64,8 @@ class GltfNodes {
     Parts parts(const GltfNodePose&, const std::string& wish, const Transform& toBox, bool dark);
     void writeSurface(SceneNode& shape, const tinygltf::Primitive&, GltfPrimitive&, bool dark);
     void writeVariants(SceneNode& shape, const tinygltf::Primitive&);
-    void writeBending(SceneNode& shape, const std::string& name, GltfBending);
+    void writeBending(SceneNode& shape, const std::string& name, GltfBending,
+                      const std::function<void(const Vec3&)>& show);
 
     GltfContext& ctx_;
     GltfMaterials materials_;

@@ -96,8 +96,8 @@ TEST_CASE("glTF: a skin bends while the shutter is open") {
     CHECK(made.has("at 1 s { file"));
     CHECK_FALSE(made.says("stand still"));
     CHECK(made.says("what material `skin` emits is left out: it is bent"));
-    // A quarter and three quarters of the turn by 90°, and in between; with keys every 45°/8 the middle of a chord is
-    // 3 (1 - cos 2.8°) = 4 mm inside of the circle.
+    // A quarter and three quarters of the turn by 90°, and in between; with keys every 90°/32 the middle of a chord is
+    // 3 (1 - cos 1.4°) = 0.9 mm inside of the circle.
     const auto scene = made.seen(0.25, 0.75);
     INFO(scene.report());
     REQUIRE_FALSE(scene.diagnostics().hasErrors());
