@@ -241,6 +241,13 @@ case("medium-constvolume", SKY + LAMP + BALL % '<bsdf type="null"/><medium type=
 AIR = '<medium type="homogeneous" id="air"><rgb name="sigma_t" value="0.08"/><rgb name="albedo" value="0.8"/></medium>'
 case("medium-air", LAMP + FLOOR + BALL % '<bsdf type="twosided"><bsdf type="diffuse"/></bsdf><ref name="exterior" id="air"/>', lens=sensor(AIR), integrator="volpath", depth=40, spp=32)
 
+# The camera stands in a box of fog, with a ball in it, and a surface that has the fog on both sides.
+FOG = '<medium type="homogeneous" id="fog"><rgb name="sigma_t" value="0.1, 0.15, 0.2"/><rgb name="albedo" value="0.7"/></medium>'
+ROOM = '<shape type="cube"><transform name="to_world"><scale value="6"/></transform><bsdf type="null"/><ref name="interior" id="fog"/></shape>'
+WITHIN = '<shape type="sphere"><point name="center" x="-0.5" y="0.5" z="2"/><float name="radius" value="0.6"/><bsdf type="null"/><ref name="interior" id="fog"/><ref name="exterior" id="fog"/></shape>'
+MATTE = BALL % '<bsdf type="twosided"><bsdf type="diffuse"/></bsdf><ref name="exterior" id="fog"/>'
+case("medium-around-camera", FOG + SKY + LAMP + FLOOR + ROOM + MATTE + WITHIN, lens=sensor('<ref id="fog"/>'), integrator="volpath", depth=40, spp=24)
+
 GRID = '<medium type="heterogeneous" name="interior"><volume type="gridvolume" name="sigma_t"><string name="filename" value="puff.vol"/>%s</volume><rgb name="albedo" value="0.8"/><float name="scale" value="3"/></medium>'
 case("medium-grid", SKY + LAMP + FLOOR + '<shape type="cube"><transform name="to_world"><scale value="0.9"/></transform><bsdf type="null"/>%s</shape>' % (GRID % '<transform name="to_world"><scale value="1.8"/><translate x="-0.9" y="-0.9" z="-0.9"/></transform>'),
      integrator="volpath", depth=40, spp=8, tolerance=0.01, reason="voxels end half a voxel later")

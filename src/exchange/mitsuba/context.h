@@ -4,6 +4,7 @@
 #include "exchange/mitsuba/xml_object.h"
 #include "exchange/mitsuba/xml_reader.h"
 #include "exchange/shared/import.h"
+#include "exchange/shared/media_nesting.h"
 #include "exchange/shared/placement.h"
 #include "math/bounds.h"
 
@@ -39,7 +40,10 @@ struct MitsubaContext {
     std::unordered_map<const XmlObject*, SceneNode> volumes; // of media that fill no shape: voxels
     Bounds3d bounds;                                         // of the shapes so far, of the scene or of a group
     std::unordered_map<const XmlObject*, Bounds3d> groupBounds;
-    const XmlObject* air = nullptr; // the medium that the sensor is in
+    const XmlObject* air = nullptr;                    // the medium that the sensor is in
+    Vec3d eye;                                         // where that sensor is
+    MediaNesting nesting;                              // what shapes say of the media inside and around them
+    std::unordered_map<const XmlObject*, bool> surrounding; // of media: isAround()
     bool hideEmitters = false;
     bool settles = false;            // nobody looks into the nodes of the scene again
     bool seesMedia = false;          // the integrator is one for media

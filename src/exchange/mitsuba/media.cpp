@@ -136,16 +136,38 @@ std::string mediumOf(const XmlObject& object, Span from, MitsubaContext& ctx) {
     return name == "-" ? std::string() : name;
 }
 
-std::string interiorOf(const XmlObject& shape, MitsubaContext& ctx) {
-    const XmlParam* const outside = shape.find("exterior");
-    // What the camera is in is everywhere.
-    if (outside && ctx.seesMedia && !(ctx.air && outside->object == ctx.air))
-        ctx.import.leftOut(nullptr, outside->span, "`exterior`",
-                           "a shape has a medium inside; what is around it belongs to the shape that holds it, or is "
-                           "the medium of the sensor");
-    const XmlParam* const inside = shape.find("interior");
-    if (!inside || !inside->object || inside->object->tag != "medium") return {};
-    return mediumOf(*inside->object, inside->span, ctx);
+ShapeMedia mediaOf(const XmlObject& shape, MitsubaContext& ctx) {
+    ShapeMedia media;
+    const auto read = [&](std::string_view name) -> const XmlObject* {
+        const XmlParam* const param = shape.find(name);
+        if (!param || !param->object || param->object->tag != "medium") return nullptr;
+        if (ctx.seesMedia) return param->object;
+        mediumOf(*param->object, param->span, ctx); // says why it is left out
+        return nullptr;
+    };
+    media.inside = read("interior");
+    media.outside = read("exterior");
+    return media;
+}
+
+bool isAround(const XmlObject* medium, MitsubaContext& ctx) {
+    const auto fills = [&](const XmlObject& shape) {
+        if (shape.tag != "shape") return false;
+        const auto side = [&](std::string_view name) {
+            const auto found = std::ranges::find(shape.params, name, &XmlParam::name);
+            return found == shape.params.end() ? nullptr : found->object;
+        };
+        return side("interior") == medium && side("exterior") != medium;
+    };
+    const auto [known, isNew] = ctx.surrounding.try_emplace(medium, false);
+    if (isNew) known->second = medium == ctx.air || std::ranges::any_of(ctx.scene.objects, fills);
+    return known->second;
+}
+
+void placeMedia(MitsubaContext& ctx) {
+    const bool isEverywhere = ctx.air && !ctx.nesting.isHeldAt(ctx.air, ctx.eye);
+    if (isEverywhere) ctx.define("atmosphere").name(ctx.media[ctx.air]);
+    ctx.nesting.report(isEverywhere ? ctx.air : nullptr, "`exterior`", ctx.import);
 }
 
 } // namespace abbe::exchange

@@ -7,8 +7,17 @@ namespace abbe::exchange {
 
 // The name of a medium, defined once; empty where it is left out, with a place for the reason.
 std::string mediumOf(const XmlObject& medium, Span from, MitsubaContext&);
-// The name of the medium inside a shape, defined once; empty without one, or where it is left out.
-std::string interiorOf(const XmlObject& shape, MitsubaContext&);
+// What a shape says of the media inside of it and around it; null for none, and for all where the integrator sees none,
+// which is said.
+struct ShapeMedia {
+    const XmlObject *inside = nullptr, *outside = nullptr;
+    bool isStated() const { return inside || outside; }
+};
+ShapeMedia mediaOf(const XmlObject& shape, MitsubaContext&);
+// Whether what is around a shape is there without it: the medium of the sensor, or one that fills another shape.
+bool isAround(const XmlObject* medium, MitsubaContext&);
+// After all shapes: the medium around the camera, and what media of shapes are not as they are stated.
+void placeMedia(MitsubaContext&);
 
 // The medium inside a shape as a volume of its own, where it is one of voxels: `volume NAME vdb …`; null otherwise. It
 // fills the bounds of its grid (grid_media.cpp).

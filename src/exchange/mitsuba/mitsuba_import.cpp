@@ -78,6 +78,7 @@ void importMitsuba(const std::filesystem::path& path, Import& import) {
     writeRender(ctx);
     for (const XmlObject* emitter : root.objects("emitter")) convertEmitter(*emitter, ctx);
     for (const XmlObject* shape : root.objects("shape")) convertShape(*shape, nullptr, ctx);
+    placeMedia(ctx);
     // Definitions that nothing refers to are read, so that what they hold is no fault, and then not needed.
     for (const XmlParam& param : root.params)
         if (param.object && param.tag != "scene") param.used = true;

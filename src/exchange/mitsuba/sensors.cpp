@@ -161,18 +161,18 @@ void writeFilm(const XmlObject* film, const MitsubaFilm& size, MitsubaContext& c
     warnOfUnused(*film, ctx.import);
 }
 
-// The medium of the first sensor is everywhere but in closed shapes.
+// The medium of the first sensor is everywhere, unless a shape that is filled with it holds the sensor (placeMedia).
 void writeAir(const XmlObject& sensor, MitsubaContext& ctx) {
     const auto media = sensor.objects("medium");
     if (media.empty() || media[0] == ctx.air) return;
     if (ctx.air) {
-        ctx.import.leftOut(nullptr, sensor.span, "the medium of a second sensor", "that of the first is everywhere");
+        ctx.import.leftOut(nullptr, sensor.span, "the medium of a second sensor",
+                           "a scene has one medium around its cameras, that of the first");
         return;
     }
-    const std::string name = mediumOf(*media[0], sensor.span, ctx);
-    if (name.empty()) return;
+    if (mediumOf(*media[0], sensor.span, ctx).empty()) return;
     ctx.air = media[0];
-    ctx.define("atmosphere").name(name);
+    ctx.eye = mitsubaTransform(sensor).t;
 }
 
 } // namespace

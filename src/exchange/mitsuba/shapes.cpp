@@ -5,8 +5,12 @@
 #include "exchange/mitsuba/settings.h"
 #include "exchange/shared/placement.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <string_view>
+#include <utility>
 
 namespace abbe::exchange {
 
@@ -75,6 +79,28 @@ void leaveOutShape(const XmlObject& shape, MitsubaContext& ctx) {
     for (const XmlParam& param : shape.params) param.used = true;
 }
 
+// What has no inside whatever its material.
+bool isOpen(const XmlObject& shape) {
+    constexpr std::array<std::string_view, 5> kOpen = {"rectangle", "disk", "cylinder", "bsplinecurve", "linearcurve"};
+    return std::ranges::find(kOpen, shape.plugin) != kOpen.end();
+}
+
+// `ctx.bounds` are those of the shape, in the world unless it is part of an object.
+void noteMedia(const XmlObject& shape, const MaterialTraits& traits, const ShapeMedia& media, bool isFilled,
+               bool isPart, MitsubaContext& ctx) {
+    FilledShape filled;
+    filled.name = shape.id.empty() ? fmt::format("a `{}`", shape.plugin) : fmt::format("`{}`", shape.id);
+    filled.span = shape.span;
+    filled.surface = traits.boundary ? FilledShape::Surface::boundary
+                     : traits.clear  ? FilledShape::Surface::dielectric
+                                     : FilledShape::Surface::opaque;
+    filled.inside = media.inside;
+    filled.outside = media.outside;
+    filled.isFilled = isFilled && filled.surface != FilledShape::Surface::opaque;
+    if (!isPart) filled.box = ctx.bounds;
+    ctx.nesting.note(std::move(filled));
+}
+
 void convertSurface(const XmlObject& shape, SceneNode* parent, MitsubaContext& ctx) {
     const auto bsdfs = shape.objects("bsdf");
     const XmlObject* const bsdf = bsdfs.empty() ? nullptr : bsdfs[0];
@@ -86,11 +112,24 @@ void convertSurface(const XmlObject& shape, SceneNode* parent, MitsubaContext& c
                            "cameras see radiance: a white `diffuse` surface in its place shows irradiance / π");
     // Voxels behind a surface that is none stand for themselves.
     const bool voxels = traits.boundary && !parent && emitters.empty() && gridVolumeOf(shape, ctx);
-    const std::string inside = voxels ? std::string() : interiorOf(shape, ctx);
+    const ShapeMedia media = mediaOf(shape, ctx);
+    // A surface within one medium, which is there anyway, has nothing to say.
+    const bool isWithin = media.inside && media.inside == media.outside && isAround(media.outside, ctx);
+    std::string inside = voxels || !media.inside || isWithin
+                             ? std::string()
+                             : mediumOf(*media.inside, shape.find("interior")->span, ctx);
     SceneNode node("shape");
     node.name(ctx.shapeNames.take(shape.id, shape.plugin));
     if (!emitters.empty()) noteEmitterTextures(*emitters[0], traits);
+    const Bounds3d others = std::exchange(ctx.bounds, {});
     const ShapeForm form = writeGeometry(node, shape, traits, ctx);
+    if (!inside.empty() && isOpen(shape)) {
+        ctx.import.leftOut(&node, shape.span, "`interior`", "an open surface has no inside: media fill closed shapes");
+        inside.clear();
+    }
+    if (form.shown && media.isStated() && !isWithin)
+        noteMedia(shape, traits, media, voxels || !inside.empty(), parent != nullptr, ctx);
+    ctx.bounds.add(others);
     if (form.shown && traits.normalMap && form.turned)
         ctx.import.approximated(
             &node, shape.span, fmt::format("the normal map of `{}`", shape.plugin),

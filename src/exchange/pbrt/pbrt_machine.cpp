@@ -278,9 +278,10 @@ void PbrtMachine::finish() {
         if (light->has("L") || light->has("filename") || light->has("scale"))
             light->reportUnused("an area light", shared_.faults());
     view_.finish(firstTime_, lastTime_);
+    const bool isEverywhere = shapes_.placeMedia(view_.mediumName(), view_.eye());
     if (view_.mediumName().empty()) return;
     const PbrtMedium* medium = media_.use(view_.mediumName(), {});
-    if (medium && !medium->word.empty()) {
+    if (medium && !medium->word.empty() && isEverywhere) {
         SceneNode around("atmosphere");
         shared_.definitions.push_back(std::move(around.name(medium->word)));
     }

@@ -16,17 +16,13 @@
 
 namespace abbe::exchange {
 
-struct PbrtShapes::Making {
-    const std::string& type;
-    const PbrtParams& params;
-    const PbrtState& state;
-    const PbrtMaterial* material = nullptr; // null: grey, or one that is defined later
-    SceneNode geometry{"shape"};            // type and size, without what all shapes have
-    std::vector<double> areas = {};         // of the parts that pbrt counts as lights of their own
-    bool isTextured = false;                // by the picture of its light
-};
-
 namespace {
+
+Bounds3d boxOf(const MeshData& mesh) {
+    Bounds3d box;
+    for (const Vec3& p : mesh.positions) box.add(Vec3d(p));
+    return box;
+}
 
 constexpr std::size_t kPbrtTiny = 24; // points of a mesh that stands in the scene itself
 
@@ -104,6 +100,7 @@ void PbrtShapes::mesh(Making& m, MeshData mesh, std::string_view stem) {
     if (m.areas.empty() && m.state.areaLight && m.state.areaLight->has("power"))
         m.areas = pbrtFaceAreas(mesh, m.state.place.at[0]);
     m.geometry.word("mesh");
+    m.box = boxOf(mesh);
     source(m.geometry, mesh, stem, !m.state.areaLight || mesh.uvs.empty()); // lights have no `uvs`
     finish(m, Transform(), 0);
 }
@@ -197,6 +194,7 @@ void PbrtShapes::loopSubdivision(Making& m) {
             shared_.faults().error("E0802", m.params.directive, fmt::format("this shape makes no sense: {}", *fault)));
     pbrtOrient(cage, m.state.isReversed);
     m.geometry.word("subdivision");
+    m.box = boxOf(cage);
     source(m.geometry, cage, "cage");
     m.geometry.child("scheme").word("loop");
     m.geometry.child("dicing").number(std::clamp(m.params.integer("levels", 3, shared_.faults()), 0, 10));
@@ -248,6 +246,9 @@ void PbrtShapes::plyMesh(Making& m) {
     try {
         if (!isDisplaced && plyIsFit(m, path)) {
             m.geometry.word("mesh").text(shared_.out.files.refer(path));
+            // What is inside of a medium has to be known; that of other shapes would be read for nothing.
+            if (!m.state.inside.empty() && m.state.inside != m.state.outside)
+                m.box = boxOf(parsePly(pbrtReadFile(path), name).mesh);
             return finish(m, Transform(), 0);
         }
         MeshData data = parsePly(pbrtReadFile(path), name).mesh;
@@ -258,6 +259,7 @@ void PbrtShapes::plyMesh(Making& m) {
         if (const PbrtUv map = uvMap(m); !map.isIdentity()) pbrtMapUvs(data, map);
         data.normals.clear();
         m.geometry.word("subdivision");
+        m.box = boxOf(data);
         source(m.geometry, data, stem);
         displaced(m);
         finish(m, Transform(), 0);
@@ -280,6 +282,7 @@ void PbrtShapes::sphere(Making& m) {
     const bool isInsideOut = m.state.isReversed && hasSides(m);
     if (isWhole && !isInsideOut && isUnmapped(m)) {
         m.geometry.word("sphere").child("radius").number(s.radius);
+        m.box = {Vec3d(-s.radius, -s.radius, -s.radius), Vec3d(s.radius, s.radius, s.radius)};
         return finish(m, needsUvs(m) ? pbrtTurned() : Transform(), area);
     }
     shared_.out.approximated(&m.geometry, m.params.directive,
@@ -402,12 +405,16 @@ void PbrtShapes::flush() {
 void PbrtShapes::finish(Making& m, const Transform& before, double area) {
     const PbrtState& state = m.state;
     const bool isInterface = m.material && m.material->isInterface;
-    const PbrtMedium* inside = state.inside.empty() ? nullptr : media_.use(state.inside, m.params.directive);
+    // One medium on both sides is none of the shape's: a ray keeps what it is in.
+    const bool isWithin = state.inside == state.outside;
+    const PbrtMedium* inside =
+        state.inside.empty() || isWithin ? nullptr : media_.use(state.inside, m.params.directive);
+    if (!isWithin) noteMedia(m, inside != nullptr);
     if (isInterface && !state.areaLight && (state.inside.empty() || !inside || inside->word.empty())) {
         // A volume has its own bounds, and a boundary of nothing does nothing.
         if (state.inside.empty() && !state.outside.empty())
             shared_.out.leftOut(nullptr, m.params.directive, "a hole in a medium",
-                                "a boundary has something inside, not outside");
+                                "media here add up: what is around a boundary goes on inside");
         return;
     }
     std::optional<PbrtEmission> emission;

@@ -6,8 +6,11 @@
 #include "exchange/pbrt/pbrt_mesh.h"
 #include "exchange/pbrt/pbrt_state.h"
 #include "exchange/pbrt/pbrt_strands.h"
+#include "exchange/shared/media_nesting.h"
+#include "math/bounds.h"
 
 #include <list>
+#include <set>
 
 namespace abbe::exchange {
 
@@ -27,11 +30,24 @@ class PbrtShapes {
         first_ = first;
         last_ = last;
     }
+    // After all shapes, `around` being the medium that the camera at `eye` is in: whether it is an atmosphere, since no
+    // shape that it fills holds the camera. Says what media of shapes are not as they are stated.
+    bool placeMedia(const std::string& around, Vec3d eye);
     // `transform` of a node, with keys where it moves.
     void place(SceneNode&, const PbrtMotion&, const Transform& before) const;
 
   private:
-    struct Making; // one shape
+    // One shape.
+    struct Making {
+        const std::string& type;
+        const PbrtParams& params;
+        const PbrtState& state;
+        const PbrtMaterial* material = nullptr; // null: grey, or one that is defined later
+        SceneNode geometry{"shape"};            // type and size, without what all shapes have
+        std::vector<double> areas = {};         // of the parts that pbrt counts as lights of their own
+        bool isTextured = false;                // by the picture of its light
+        Bounds3d box = {};                      // in its own space; empty where it is not known
+    };
 
     void sphere(Making&);
     void disk(Making&);
@@ -53,6 +69,9 @@ class PbrtShapes {
     bool hasSides(const Making&) const;
     bool isUnmapped(const Making&) const;
     PbrtUv uvMap(Making&);
+    // pbrt_surroundings.cpp
+    void noteMedia(const Making&, bool isFilled);
+    const void* mediumId(const std::string& name) { return name.empty() ? nullptr : &*mediumIds_.insert(name).first; }
     // Material, media, light and place; the node is then in the list.
     void finish(Making&, const Transform& before, double area);
     // Of a shape that is no light.
@@ -68,6 +87,8 @@ class PbrtShapes {
     Span strandSpan_;
     std::list<SceneNode>* nodes_ = nullptr;
     bool inObject_ = false;
+    MediaNesting nesting_;
+    std::set<std::string> mediumIds_; // names that shapes state
     double first_ = 0, last_ = 1;
 };
 

@@ -24,6 +24,8 @@ class PbrtView {
 
     // The medium around the camera, or an empty name.
     const std::string& mediumName() const { return medium_; }
+    // Where it is when the motion begins, in the world.
+    Vec3d eye() const { return worldFromCamera_.at[0].t; }
     // When all is said: writes the settings.
     void finish(double firstTime, double lastTime);
 
