@@ -292,6 +292,8 @@ void XmlReader::file(const fs::path& path, Span from, XmlObject* into, int depth
     open_.push_back(path);
     pugi::xml_document document;
     const std::string_view text = import_.sources.text(file_);
+    constexpr std::size_t kOfId = 500; // bytes of text for each, as scenes of millions of them have
+    ids_.reserve(ids_.size() + text.size() / kOfId);
     const auto parsed = document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!parsed) {
         const auto at = static_cast<std::uint32_t>(

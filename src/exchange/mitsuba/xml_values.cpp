@@ -1,5 +1,7 @@
 #include "exchange/mitsuba/xml_values.h"
 
+#include "exchange/shared/decimal.h"
+
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -103,7 +105,7 @@ template <typename F> bool forNumbers(std::string_view text, const F& take) {
         if (at == last) return true;
         if (*at == '+') ++at;
         double value = 0;
-        const auto [end, error] = std::from_chars(at, last, value);
+        const auto [end, error] = parseDecimal(at, last, value);
         if (error != std::errc() || !std::isfinite(value)) return false;
         if (end != last && !isXmlBlank(*end)) return false;
         at = end;

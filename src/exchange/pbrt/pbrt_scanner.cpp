@@ -1,5 +1,7 @@
 #include "exchange/pbrt/pbrt_scanner.h"
 
+#include "exchange/shared/decimal.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -20,7 +22,7 @@ constexpr double kPbrtLargest = 3.4e38, kPbrtSmallest = 1.4e-45;
 // A number that ends where a word would; null where there is none. Too small ones are 0.
 const char* pbrtScanNumber(const char* p, const char* end, double& value) {
     const char* start = p < end && *p == '+' ? p + 1 : p;
-    const auto [rest, error] = std::from_chars(start, end, value);
+    const auto [rest, error] = parseDecimal(start, end, value);
     if (error == std::errc::result_out_of_range) {
         const std::string_view digits(start, static_cast<std::size_t>(rest - start));
         const auto exponent = digits.find_first_of("eE");

@@ -1,5 +1,7 @@
 #include "exchange/shared/placement.h"
 
+#include <array>
+
 namespace abbe::exchange {
 
 namespace {
@@ -30,9 +32,13 @@ bool isIdentity(const Transform& m) {
 
 void writeSteps(SceneNode& node, const Transform& m) {
     if (!isDiagonal(m)) {
-        SceneNode& matrix = node.child("matrix");
-        for (int r = 0; r < 3; ++r) matrix.number(m.a[r][0]).number(m.a[r][1]).number(m.a[r][2]).number(m.t[r]);
-        matrix.number(0).number(0).number(0).number(1);
+        std::array<double, 16> matrix{};
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::size_t c = 0; c < 3; ++c) matrix[4 * r + c] = m.a[r][c];
+            matrix[4 * r + 3] = m.t[static_cast<int>(r)];
+        }
+        matrix[15] = 1;
+        node.child("matrix").numbers(matrix);
         return;
     }
     const Vec3d scale{m.a[0][0], m.a[1][1], m.a[2][2]};

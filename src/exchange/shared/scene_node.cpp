@@ -1,11 +1,9 @@
 #include "exchange/shared/scene_node.h"
 
-#include "base/check.h"
+#include "exchange/shared/decimal.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 
 namespace abbe::exchange {
 
@@ -101,18 +99,18 @@ bool isPlainWord(std::string_view text) {
 
 namespace {
 
-void appendNumber(std::string& out, double value) {
-    ABBE_CHECK(std::isfinite(value));
-    std::array<char, 32> digits;
-    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value);
-    out.append(digits.data(), result.ptr);
+// For so many numbers, so that a text need not move while it grows.
+void makeRoom(std::string& values, std::size_t numbers) {
+    constexpr std::size_t kOfNumber = 12;
+    const std::size_t wanted = values.size() + numbers * kOfNumber;
+    if (values.capacity() < wanted) values.reserve(std::max(wanted, 2 * values.capacity()));
 }
 
 } // namespace
 
 std::string numberText(double value) {
     std::string text;
-    appendNumber(text, value);
+    appendDecimal(text, value);
     return text;
 }
 
@@ -125,16 +123,20 @@ SceneNode& SceneNode::name(std::string_view text) { return isPlainWord(text) ? w
 
 SceneNode& SceneNode::number(double value) {
     values_ += ' ';
-    appendNumber(values_, value);
+    appendDecimal(values_, value);
     return *this;
 }
 
 SceneNode& SceneNode::numbers(std::span<const double> values) {
+    makeRoom(values_, values.size());
     for (const double value : values) number(value);
     return *this;
 }
 
-SceneNode& SceneNode::vector(Vec3d v) { return number(v.x).number(v.y).number(v.z); }
+SceneNode& SceneNode::vector(Vec3d v) {
+    makeRoom(values_, 3);
+    return number(v.x).number(v.y).number(v.z);
+}
 
 SceneNode& SceneNode::text(std::string_view value) { return word(quotedText(value)); }
 
@@ -145,7 +147,7 @@ SceneNode& SceneNode::key(std::string_view name, std::string_view word) {
 
 SceneNode& SceneNode::key(std::string_view name, double value) {
     values_.append(1, ' ').append(name).append(1, '=');
-    appendNumber(values_, value);
+    appendDecimal(values_, value);
     return *this;
 }
 
@@ -181,6 +183,8 @@ SceneNode& SceneNode::remark(std::string_view text) {
 // Writes nodes behind each other into one text. A node is tried on one line, and taken back where it does not fit.
 class ScenePrinter {
   public:
+    explicit ScenePrinter(std::size_t room) { out_.reserve(room); }
+
     void file(const SceneNode& node, const SceneNode* before) {
         const bool apart = before && (before->name_ != node.name_ || !node.remarks_.empty() || wasBlock_);
         if (apart) out_ += '\n';
@@ -257,7 +261,8 @@ class ScenePrinter {
 
 void SceneNode::settle() {
     if (form_ != Form::parts) return;
-    ScenePrinter printer;
+    constexpr std::size_t kOfNode = 400;
+    ScenePrinter printer(kOfNode);
     form_ = printer.print(*this, 0) ? Form::block : Form::line;
     values_ = printer.take();
     values_.shrink_to_fit();
@@ -266,7 +271,9 @@ void SceneNode::settle() {
 }
 
 template <typename Nodes> std::string printed(const Nodes& nodes) {
-    ScenePrinter printer;
+    std::size_t settled = 0; // bytes: the text of millions of nodes shall not move while it grows
+    for (const SceneNode& node : nodes) settled += node.values().size() + 2;
+    ScenePrinter printer(settled);
     const SceneNode* before = nullptr;
     for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
     return printer.take();

@@ -5,12 +5,23 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
+#include <optional>
 
 namespace abbe::exchange {
 
 namespace {
 
 constexpr std::size_t kLongestStem = 80;
+
+// Of "name-7".
+std::optional<int> numberBehind(std::string_view name) {
+    const std::size_t dash = name.rfind('-');
+    if (dash == std::string_view::npos) return std::nullopt;
+    int number = 0;
+    const char* const end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + dash + 1, end, number);
+    return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
+}
 
 std::string safeStem(std::string_view text) {
     const auto kept = [](char c) {
@@ -56,25 +67,25 @@ std::string SideFiles::refer(const std::filesystem::path& file) {
 }
 
 std::string NameTable::take(std::string_view wish, std::string_view fallback) {
-    const std::string base(wish.empty() ? fallback : wish);
-    if (!made(base) && taken_.insert(base).second) return prefix_ + base;
+    std::string base(wish.empty() ? fallback : wish);
+    if (!made(base) && taken_.insert(base).second) {
+        numbered_ = numbered_ || numberBehind(base);
+        return prefix_.empty() ? base : prefix_ + base;
+    }
     int& number = next_.try_emplace(base, 2).first->second;
     std::string name;
     do name = base + '-' + std::to_string(number++);
-    while (taken_.contains(name));
-    return prefix_ + name;
+    while (numbered_ && taken_.contains(name));
+    return prefix_.empty() ? name : prefix_ + name;
 }
 
 // Whether a name with a number behind it was given to somebody.
 bool NameTable::made(const std::string& name) const {
-    const std::size_t dash = name.rfind('-');
-    if (next_.empty() || dash == std::string::npos) return false;
-    int number = 0;
-    const char* const end = name.data() + name.size();
-    const auto [rest, error] = std::from_chars(name.data() + dash + 1, end, number);
-    if (error != std::errc() || rest != end) return false;
-    const auto found = next_.find(name.substr(0, dash));
-    return found != next_.end() && number < found->second;
+    if (next_.empty()) return false;
+    const auto number = numberBehind(name);
+    if (!number) return false;
+    const auto found = next_.find(name.substr(0, name.rfind('-')));
+    return found != next_.end() && *number < found->second;
 }
 
 void reserveTypeNames(NameTable& materials, NameTable& textures, NameTable& media) {

@@ -60,6 +60,7 @@ class NameTable {
 
     std::string prefix_;
     std::unordered_set<std::string> taken_;     // those that were wished for
+    bool numbered_ = false;                     // some of these end in a number
     std::unordered_map<std::string, int> next_; // number to try for a wish; those below it count as taken
 };
 
