@@ -271,9 +271,7 @@ void SceneNode::settle() {
 }
 
 template <typename Nodes> std::string printed(const Nodes& nodes) {
-    std::size_t settled = 0; // bytes: the text of millions of nodes shall not move while it grows
-    for (const SceneNode& node : nodes) settled += node.values().size() + 2;
-    ScenePrinter printer(settled);
+    ScenePrinter printer(0);
     const SceneNode* before = nullptr;
     for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
     return printer.take();

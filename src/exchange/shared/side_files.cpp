@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
+#include <functional>
 #include <optional>
 
 namespace abbe::exchange {
@@ -68,15 +69,52 @@ std::string SideFiles::refer(const std::filesystem::path& file) {
 
 std::string NameTable::take(std::string_view wish, std::string_view fallback) {
     std::string base(wish.empty() ? fallback : wish);
-    if (!made(base) && taken_.insert(base).second) {
+    if (!made(base) && insert(base)) {
         numbered_ = numbered_ || numberBehind(base);
         return prefix_.empty() ? base : prefix_ + base;
     }
     int& number = next_.try_emplace(base, 2).first->second;
     std::string name;
     do name = base + '-' + std::to_string(number++);
-    while (numbered_ && taken_.contains(name));
+    while (numbered_ && isTaken(name));
     return prefix_.empty() ? name : prefix_ + name;
+}
+
+namespace {
+
+std::uint64_t hashOfName(std::string_view name) {
+    const std::uint64_t hash = std::hash<std::string_view>()(name);
+    return hash != 0 ? hash : 1;
+}
+
+// Where a hash is in the table, or the free place where it belongs. The size is a power of two.
+std::size_t placeOf(const std::vector<std::uint64_t>& table, std::uint64_t hash) {
+    const std::size_t mask = table.size() - 1;
+    std::size_t at = hash & mask;
+    while (table[at] != 0 && table[at] != hash) at = (at + 1) & mask;
+    return at;
+}
+
+} // namespace
+
+bool NameTable::isTaken(std::string_view name) const {
+    return !taken_.empty() && taken_[placeOf(taken_, hashOfName(name))] != 0;
+}
+
+bool NameTable::insert(std::string_view name) {
+    constexpr std::size_t kFirst = 64;
+    if (2 * (count_ + 1) > taken_.size()) {
+        std::vector<std::uint64_t> larger(std::max(kFirst, 2 * taken_.size()), 0);
+        for (const std::uint64_t hash : taken_)
+            if (hash != 0) larger[placeOf(larger, hash)] = hash;
+        taken_ = std::move(larger);
+    }
+    const std::uint64_t hash = hashOfName(name);
+    std::uint64_t& slot = taken_[placeOf(taken_, hash)];
+    if (slot != 0) return false;
+    slot = hash;
+    ++count_;
+    return true;
 }
 
 // Whether a name with a number behind it was given to somebody.

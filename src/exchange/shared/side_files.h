@@ -1,6 +1,7 @@
 // What an imported scene reads: files that were there and are referred to, and files that the import writes beside it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -8,8 +9,8 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
+#include <vector>
 
 namespace abbe::exchange {
 
@@ -57,9 +58,14 @@ class NameTable {
 
   private:
     bool made(const std::string& name) const;
+    bool isTaken(std::string_view name) const;
+    bool insert(std::string_view name); // false if it is there already
 
     std::string prefix_;
-    std::unordered_set<std::string> taken_;     // those that were wished for
+    // Those that were wished for, by their hashes, in a table with open addresses: of millions of names no text is
+    // kept. Where two texts share 64 bits, the second gets a number that it did not need.
+    std::vector<std::uint64_t> taken_; // 0: free
+    std::size_t count_ = 0;
     bool numbered_ = false;                     // some of these end in a number
     std::unordered_map<std::string, int> next_; // number to try for a wish; those below it count as taken
 };
