@@ -40,9 +40,9 @@ struct MitsubaContext {
     std::unordered_map<const XmlObject*, SceneNode> volumes; // of media that fill no shape: voxels
     Bounds3d bounds;                                         // of the shapes so far, of the scene or of a group
     std::unordered_map<const XmlObject*, Bounds3d> groupBounds;
-    const XmlObject* air = nullptr;                    // the medium that the sensor is in
-    Vec3d eye;                                         // where that sensor is
-    MediaNesting nesting;                              // what shapes say of the media inside and around them
+    const XmlObject* air = nullptr;                         // the medium that the sensor is in
+    Vec3d eye;                                              // where that sensor is
+    MediaNesting nesting;                                   // what shapes say of the media inside and around them
     std::unordered_map<const XmlObject*, bool> surrounding; // of media: isAround()
     bool hideEmitters = false;
     bool settles = false;            // nobody looks into the nodes of the scene again
