@@ -119,7 +119,7 @@ for ((y = 0; y < 512; y += 64)); do
 done
 memory_of() { sed -n 's/.*"event":"done".*"memory_bytes":\([0-9]*\).*/\1/p' out; }
 expect 0 merge tall*.abbe --json -o tall.exr
-(($(memory_of) < 400000000)) || fault "a merge took $(memory_of) bytes of memory"
+sanitized || (($(memory_of) < 400000000)) || fault "a merge took $(memory_of) bytes of memory"
 expect 0 merge tall0.part1.abbe --json -o tall.abbe
 expect 0 info tall.exr
 says out "S0.829,5nm (float)"

@@ -377,7 +377,7 @@ TEST_CASE("light tree: built in no time, the same every time") {
     const LightTree tree(lights);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     MESSAGE("100 000 lights: ", seconds, " s, depth ", tree.depth());
-    CHECK(seconds < 5); // 0.4 s on a machine of its own; sanitizers are slower
+    CHECK(seconds < 20); // 0.4 s on a machine of its own, 6 s under sanitizers on a busy one; not the hour of all pairs
     const LightTree again(lights);
     Random random(9);
     for (int i = 0; i < 200; ++i) {
