@@ -19,6 +19,7 @@ unset NO_COLOR
 sanitized() { grep -q -e asan -e tsan <<<"$program"; }
 patience=300 # seconds
 ! sanitized || patience=2400
+at_most() { sanitized || ulimit -v "$1"; } # KiB of memory in this shell; sanitizers reserve terabytes
 
 fault() {
     printf 'FAULT: %s\n' "$*"

@@ -91,7 +91,7 @@ promise() {
 }
 promise 16384 >tiny.exr
 (
-    ulimit -v 4000000
+    at_most 4000000
     for words in "info tiny.exr" "convert tiny.exr no.png" "denoise tiny.exr -o no.exr" "compare tiny.exr tiny.exr"; do
         # shellcheck disable=SC2086 # words of the command
         refuses 3 $words
@@ -107,8 +107,8 @@ promise 16384 >tiny.exr
 # at once; else read in pieces, within what is allowed, and left at once when that is wanted.
 nodejs "$scenes/../bombs.mjs" . || fault "no bombs"
 (($(stat -c %s bomb.exr) < 4000000 && $(stat -c %s bomb.png) < 1000000)) || fault "the bombs are no small files"
-(
-    ulimit -v 1500000
+sanitized || (
+    at_most 1500000
     for words in "convert bomb.exr no.png" "denoise bomb.exr -o no.exr" "compare bomb.exr bomb.exr"; do
         # shellcheck disable=SC2086 # words of the command
         refuses 3 $words
@@ -142,7 +142,7 @@ for kind in exr png; do
 done
 # Nothing of it is decoded for a fingerprint; all else is told.
 (
-    ulimit -v 1000000
+    at_most 1000000
     expect 0 info bomb.exr
     says out "size         16384×16384"
     says out "pixels       not read"
