@@ -105,19 +105,15 @@ class SideFiles:
     def _add_alike(self, stem: str, extension: str, made: Made, alike: list[str]) -> FileRef:
         """A file that may have the bytes of one that is there."""
         if len(alike) == 1:
-            self._by_content[(extension, self._keep(alike[0], self.made[alike[0]]))] = alike[0]
+            first = self.content(alike[0])
+            self.made[alike[0]] = at_hand([first])
+            self._by_content[(extension, first)] = alike[0]
         content = (extension, whole(made.pieces()))
         if content not in self._by_content:
             name = self._by_content[content] = self._free_name(stem, extension)
             self.made[name] = at_hand([content[1]])
             alike.append(name)
         return FileRef(self._by_content[content], own=True)
-
-    def _keep(self, name: str, made: Made) -> bytes:
-        """Makes a file, to compare others with it."""
-        content = whole(made.pieces())
-        self.made[name] = at_hand([content])
-        return content
 
     def content(self, name: str) -> bytes:
         return whole(self.made[name].pieces())

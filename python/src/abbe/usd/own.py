@@ -16,7 +16,6 @@ from pxr import Usd, UsdGeom
 _PLAIN_TYPES = frozenset({"Mesh", "Xform", "Scope", ""})
 _PLAIN_SCHEMAS = frozenset({"MaterialBindingAPI", "SkelBindingAPI", "GeomModelAPI", "MotionAPI", "VisibilityAPI"})
 
-
 _code = functools.lru_cache(maxsize=1 << 12)(Usd.TimeCode)  # to convert a number at each question takes half a microsecond
 
 
