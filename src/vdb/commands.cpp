@@ -69,7 +69,8 @@ void setLimits(const std::string& file, std::uint64_t memory) {
     struct stat status {};
     const bool known = ::stat(file.c_str(), &status) == 0;
     const auto size = static_cast<rlim_t>(known ? status.st_size : 0);
-    limit(RLIMIT_CPU, known ? 8 + size / 250'000 : 7200);
+    const rlim_t seconds = known ? 8 + size / 250'000 : 7200;
+    limit(RLIMIT_CPU, kSanitized ? 5 * seconds : seconds);
     if (kSanitized) return;
     limit(RLIMIT_DATA, known ? std::min<rlim_t>(memory, 2'000'000'000 + 256 * size) : memory);
 }

@@ -1,5 +1,6 @@
 #include "vdb/field.h"
 
+#include "vdb/grid_file.h"
 #include "vdb/output.h"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ VdbInput::VdbInput(const std::string& path) : path_(path) {
         if (nano)
             nano_ = std::make_unique<NanoVdbFile>(path);
         else
-            openVdb();
+            file_ = std::make_unique<GridFile>(path);
     } catch (const std::runtime_error& e) { // openvdb::Exception is none
         throw Failure(VdbFault::Kind::damaged, damage(fmt::format("`{}`", path), path, e));
     } catch (const openvdb::Exception& e) {
@@ -63,17 +64,9 @@ VdbInput::VdbInput(const std::string& path) : path_(path) {
         throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` holds no grids: it is empty or cut off", path));
 }
 
-void VdbInput::openVdb() {
-    file_ = std::make_unique<openvdb::io::File>(path_);
-    file_->open(false); // delayed loading would read later, from another place
-}
+VdbInput::~VdbInput() = default;
 
-std::vector<std::string> VdbInput::names() const {
-    if (nano_) return nano_->names();
-    std::vector<std::string> names;
-    for (auto name = file_->beginName(); name != file_->endName(); ++name) names.push_back(name.gridName());
-    return names;
-}
+std::vector<std::string> VdbInput::names() const { return nano_ ? nano_->names() : file_->names(); }
 
 std::string VdbInput::library() const { return nano_ ? "NanoVDB " + nano_->library() : file_->version(); }
 
@@ -87,11 +80,10 @@ std::string VdbInput::compression() const {
     return text;
 }
 
-openvdb::MetaMap VdbInput::metadata() const { return nano_ ? openvdb::MetaMap() : *file_->getMetadata(); }
+openvdb::MetaMap VdbInput::metadata() const { return nano_ ? openvdb::MetaMap() : file_->metadata(); }
 
 openvdb::GridBase::Ptr VdbInput::readGrid(const std::string& name) {
-    if (nano_) return nano_->grid(name);
-    return file_->hasGrid(name) ? file_->readGrid(name) : nullptr;
+    return nano_ ? nano_->grid(name) : file_->grid(name);
 }
 
 openvdb::GridBase::Ptr VdbInput::grid(const std::string& name) {

@@ -1,5 +1,4 @@
-// Grids of an OpenVDB or NanoVDB file, fields made of them that can be rendered, and new grids. The one header with
-// OpenVDB.
+// Grids of an OpenVDB or NanoVDB file, fields made of them that can be rendered, and new grids.
 #pragma once
 
 #include "base/parallel.h"
@@ -10,7 +9,6 @@
 #include <memory>
 #include <openvdb/Grid.h>
 #include <openvdb/Types.h>
-#include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <string>
 #include <string_view>
@@ -86,10 +84,13 @@ class NanoVdbFile {
     std::vector<std::string> names_; // in the order of the file
 };
 
+class GridFile; // in grid_file.h
+
 // An open file of either kind. Its heads are read, its grids are not.
 class VdbInput {
   public:
     explicit VdbInput(const std::string& path);
+    ~VdbInput();
     const std::string& path() const { return path_; }
     std::vector<std::string> names() const;
     std::string library() const; // version of what wrote the file
@@ -101,11 +102,10 @@ class VdbInput {
     std::string subject(const std::string& name) const;
 
   private:
-    void openVdb();
     openvdb::GridBase::Ptr readGrid(const std::string& name);
 
     std::string path_;
-    std::unique_ptr<openvdb::io::File> file_; // one of the two
+    std::unique_ptr<GridFile> file_; // one of the two
     std::unique_ptr<NanoVdbFile> nano_;
 };
 

@@ -2,6 +2,7 @@
 // worst end this one. It is started by src/volumes/vdb_file.cpp and answers with the frames of
 // volumes/vdb_message.h.
 #include "vdb/commands.h"
+#include "vdb/output.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
     }
     // The memory in bytes, the command, and a file or the kind of volume to make.
     using namespace abbe;
+    vdb::takeOutput();
     vdb::setLimits(argv[3], std::strtoull(argv[1], nullptr, 10));
     vdb::run(argv[2], std::vector<std::string>(argv + 3, argv + argc));
     ::_exit(0); // without the destructors of libraries, which have nothing to save

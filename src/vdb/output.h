@@ -23,7 +23,11 @@ class Failure : public std::exception {
 // What a library says, without the name of the exception's class that OpenVDB puts before it ("IoError: …").
 std::string plainWords(const std::exception&);
 
-// All of the bytes, to standard output. The process ends when nobody listens any more.
+// Standard output becomes this folder's alone: what libraries print (OpenVDB its warnings) goes where errors go. Frames
+// are written to standard output where this was not called.
+void takeOutput();
+
+// All of the bytes, to standard output as it was given. The process ends when nobody listens any more.
 void writeBytes(const void* bytes, std::size_t size);
 
 void writeFrame(VdbFrame kind, const std::string& content = {});
