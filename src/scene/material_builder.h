@@ -4,6 +4,7 @@
 #include "geometry/shape_params.h"
 #include "materials/interior_curves.h"
 #include "materials/layered.h"
+#include "materials/measured.h"
 #include "materials/mix.h"
 #include "materials/openpbr.h"
 #include "materials/subsurface.h"
@@ -133,6 +134,12 @@ std::unique_ptr<const Material> makeMixOf(const MixParams&, const MaterialContex
 std::unique_ptr<const Material> makeLayeredOf(const LayeredParams&, const MaterialContext&);
 std::unique_ptr<const Material> makeSubsurfaceOf(const SubsurfaceParams&, const MaterialContext&);
 std::unique_ptr<const Material> makeTwoSidedOf(const TwoSidedParams&, const MaterialContext&);
+
+// Of measurements, in measured_file.cpp. Throws IoError where something is missing, of another size, not finite, below
+// 0 or in no order.
+MeasuredTables readMeasured(const std::string& path);
+// From bound parameters; null after an error.
+std::unique_ptr<const Material> makeMeasuredOf(const MeasuredParams&, const MaterialContext&);
 
 // Takes out of a material what the command leaves out.
 void leaveOutEffects(OpenPbrParams&, const MaterialContext&);

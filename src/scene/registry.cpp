@@ -26,6 +26,7 @@
 #include "materials/diffuse.h"
 #include "materials/diffuse_transmission.h"
 #include "materials/hair.h"
+#include "materials/measured.h"
 #include "materials/openpbr.h"
 #include "materials/sheen.h"
 #include "materials/subsurface.h"
@@ -234,6 +235,7 @@ void addMaterials(std::vector<RegistryEntry>& list) {
     list.push_back(material<MixParams, makeMixOf>(mixMaterialType()));
     list.push_back(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
     list.push_back(material<LayeredParams, makeLayeredOf>(layeredType()));
+    list.push_back(material<MeasuredParams, makeMeasuredOf>(measuredType()));
     list.push_back(bareMaterial<BoundaryParams, makeBoundary>(boundaryType()));
     list.push_back(material<SheenParams, makeSheen>(sheenType()));
     list.push_back(material<ThinDielectricParams, makeThinDielectric>(thinDielectricType()));

@@ -67,6 +67,7 @@ constexpr auto kTerms = std::to_array<ForeignTerm>({
     {"light portal", "Blender, Arnold", "`portals` of `environment`, `sky` and `daylight`; windows are found without them.", "light.portals"},
     {"matte", "games, Maya", "`material diffuse`.", "material.diffuse"},
     {"max bounces", "Blender", "`max-depth` of `render`; without it paths end by Russian roulette.", "render.max-depth"},
+    {"measured bsdf", "Mitsuba, pbrt", "`material measured` with the `.bsdf` file.", "material.measured"},
     {"mesh light", "Arnold, Blender", "`light mesh`, or `emission` of a shape.", "light.mesh"},
     {"metallic", "Blender, glTF", "`base-metalness` of `material openpbr`; a metal by name is `material conductor { index metal Au }`.", "material.conductor"},
     {"metropolis", "Mitsuba, pbrt", "There is none. Light that is hard to find is found by light paths, photon merging and manifold sampling.", "render.light-paths"},

@@ -1,6 +1,5 @@
 #include "vdb/field.h"
 
-#include "vdb/grid_file.h"
 #include "vdb/output.h"
 
 #include <algorithm>
@@ -63,8 +62,6 @@ VdbInput::VdbInput(const std::string& path) : path_(path) {
     if (names().empty())
         throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` holds no grids: it is empty or cut off", path));
 }
-
-VdbInput::~VdbInput() = default;
 
 std::vector<std::string> VdbInput::names() const { return nano_ ? nano_->names() : file_->names(); }
 

@@ -1,5 +1,4 @@
-#include "vdb/grid_file.h"
-
+#include "vdb/field.h"
 #include "vdb/output.h"
 
 #include <algorithm>

@@ -160,6 +160,8 @@ bsdf("principled-glass", '<bsdf type="principled"><rgb name="base_color" value="
 STRANDS = '<shape type="bsplinecurve"><string name="filename" value="strands.txt"/>%s</shape>'
 HAIR = '<bsdf type="hair">%s</bsdf>'
 ABSORBING = '<rgb name="sigma_a" value="%s"/>'
+for measured_file in ("even", "brushed"):
+    case(f"measured-{measured_file}", SKY + LAMP + FLOOR + BALL % f'<bsdf type="measured"><string name="filename" value="{measured_file}.bsdf"/></bsdf>', variant="scalar_spectral", spp=64)
 case("hair-sigma", SKY + LAMP + STRANDS % (HAIR % (ABSORBING % 0.4)), depth=20, spp=64)
 case("hair-rough", SKY + LAMP + STRANDS % (HAIR % (ABSORBING % 0.2 + '<float name="longitudinal_roughness" value="0.15"/><float name="azimuthal_roughness" value="0.5"/><float name="scale_tilt" value="4"/><float name="scale" value="2"/>')), depth=20, spp=64, tolerance=0.01, reason="round ends of strands")
 case("hair-pigments", SKY + LAMP + STRANDS % (HAIR % '<float name="eumelanin" value="0.5"/><float name="pheomelanin" value="0.1"/>'), depth=20, tolerance=0.02, reason="other constants for pigments")
@@ -299,6 +301,8 @@ def write_files(mi, np, folder):
     save(mi, np, folder / "normals.exr", normals)
     write_meshes(np, folder)
     write_grid(np, folder)
+    write_measured(np, folder / "even.bsdf", np.zeros(1))
+    write_measured(np, folder / "brushed.bsdf", np.linspace(-np.pi, 0, 5))
     (folder / "light.spd").write_text("# nm value\n" + "".join(f"{w} {0.2 + 0.001 * (w - 400)}\n" for w in range(400, 701, 20)))
     strands = ""
     for i in range(5):
@@ -318,6 +322,43 @@ def write_grid(np, folder):
     puff[0], puff[-1], puff[:, 0], puff[:, -1], puff[:, :, 0], puff[:, :, -1] = 0, 0, 0, 0, 0, 0
     head = b"VOL\3" + struct.pack("<5i6f", 1, 16, 12, 10, 1, 0, 0, 0, 1, 1, 1)
     (folder / "puff.vol").write_bytes(head + puff.astype("<f4").tobytes())
+
+
+def write_measured(np, path, phis):
+    """A made-up .bsdf file, with spectra, of the parametrisation of Dupuy and Jakob 2018; uneven in all that it depends on."""
+    thetas, wavelengths, n = np.linspace(0, 1.55, 7), np.linspace(380, 780, 6), 16
+    u, v = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n))  # along rows theta, from row to row phi
+    theta, phi = u * u * np.pi / 2, (2 * v - 1) * np.pi
+    m = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+
+    def facets(stretch):
+        x, y, z = m
+        return 1 / (np.pi * 0.2 * ((x * x * stretch + y * y) / 0.2 + z * z) ** 2)
+
+    uneven = len(phis) > 1
+    d = facets(2.0 if uneven else 1.0)
+    vndf = np.zeros((len(phis), len(thetas), n, n))
+    luminance, spectra = np.zeros_like(vndf), np.zeros((len(phis), len(thetas), len(wavelengths), n, n))
+    for i, p in enumerate(phis):
+        for j, t in enumerate(thetas):
+            seen = np.sin(t) * np.cos(p) * m[0] + np.sin(t) * np.sin(p) * m[1] + np.cos(t) * m[2]
+            vndf[i, j] = d * np.clip(seen, 0, None) * u * np.sin(theta)
+            luminance[i, j] = 1.2 + np.cos(3 * u + 0.5 * t) * np.sin(2 * np.pi * v + p)
+            for k in range(len(wavelengths)):
+                spectra[i, j, k] = (0.5 + 0.08 * k) * luminance[i, j] * (1 - 0.3 * u) * np.cos(t)
+    sigma = np.repeat(0.25 + 0.75 * np.cos(np.linspace(0, 1, n) ** 2 * np.pi / 2)[None], n, 0)
+    fields = {"theta_i": thetas, "phi_i": phis, "wavelengths": wavelengths, "ndf": d, "sigma": sigma, "vndf": vndf,
+              "luminance": luminance, "spectra": spectra}
+    arrays = {name: np.ascontiguousarray(a, "<f4") for name, a in fields.items()}
+    arrays["description"] = np.frombuffer(b"made up", np.uint8)
+    arrays["jacobian"] = np.ones(1, np.uint8)
+    head_size = 18 + sum(13 + len(name) + 8 * a.ndim for name, a in arrays.items())
+    head, body = b"tensor_file\0" + struct.pack("<BBI", 1, 0, len(arrays)), b""
+    for name, a in arrays.items():
+        head += struct.pack("<H", len(name)) + name.encode() + struct.pack("<HBQ", a.ndim, 10 if a.itemsize == 4 else 1, head_size + len(body))
+        head += struct.pack(f"<{a.ndim}Q", *a.shape)
+        body += a.tobytes()
+    path.write_bytes(head + body)
 
 
 def hill(np):

@@ -259,11 +259,25 @@ void writePolarizing(SceneNode& at, const XmlObject& bsdf, MitsubaContext& ctx) 
                             "polarisation is not followed: what passes is what passes of light that has none");
 }
 
+void writeMeasured(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
+    traits.oneSided = true;
+    const XmlParam* const file = bsdf.find("filename");
+    const auto path = file ? findXmlFile(ctx.scene, *file, ctx.import) : std::nullopt;
+    if (!file) ctx.import.diagnostics.error("E0802", bsdf.span, "`measured` needs a `filename`");
+    if (!path) {
+        at.word("diffuse");
+        return;
+    }
+    traits.framed = true; // perhaps: files may be of brushed surfaces
+    at.word("measured").text(ctx.import.files.refer(*path));
+}
+
 void writeUnknown(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
     at.word("diffuse");
     ctx.import.leftOut(&at, bsdf.span, fmt::format("BSDF `{}`", bsdf.plugin),
-                       bsdf.plugin.starts_with("measured") ? "measured BSDFs are not read; grey and matte stands for it"
-                                                           : "nothing here is like it; grey and matte stands for it");
+                       bsdf.plugin == "measured_polarized"
+                           ? "polarisation is not followed; grey and matte stands for it"
+                           : "nothing here is like it; grey and matte stands for it");
     for (const XmlParam& param : bsdf.params) param.used = true;
     traits.oneSided = true;
 }
@@ -282,6 +296,7 @@ void writeKnown(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, Mi
     if (type == "principled" || type == "principledthin")
         return writePrincipled(at, bsdf, type != "principled", traits, ctx);
     if (type == "hair") return writeHair(at, bsdf, ctx);
+    if (type == "measured") return writeMeasured(at, bsdf, traits, ctx);
     if (type == "twosided") return writeTwoSided(at, bsdf, traits, ctx);
     if (type == "blendbsdf") return writeBlend(at, bsdf, traits, ctx);
     if (type == "mask" || type == "bumpmap" || type == "normalmap") return writeWrapper(at, bsdf, traits, ctx);

@@ -189,6 +189,12 @@ void writeHairBsdf(pugi::xml_node parent, std::string_view id, const StatedThing
     w.out.approximated(m.span, "`hair`", "the same model with other constants for pigments");
 }
 
+void writeMeasuredBsdf(pugi::xml_node parent, std::string_view id, const StatedThing& m, MitsubaWriter& w) {
+    pugi::xml_node node = xmlChild(parent, "bsdf", "measured", {}, id);
+    if (const auto* const file = m.value<schema::Text>("file"))
+        xmlValue(node, "string", "filename", w.out.files.refer(file->value));
+}
+
 void writeNullBsdf(pugi::xml_node parent, std::string_view id, const StatedThing&, MitsubaWriter&) {
     xmlChild(parent, "bsdf", "null", {}, id);
 }
@@ -216,6 +222,7 @@ constexpr MaterialRow kMaterials[] = {
     {"layered", writeLayeredBsdf, true},
     {"openpbr", writePrincipledBsdf, true},
     {"hair", writeHairBsdf, false},
+    {"measured", writeMeasuredBsdf, true},
     {"boundary", writeNullBsdf, false},
     {"subsurface", writeMatte, true},
     {"sheen", writeMatte, true},

@@ -332,10 +332,14 @@ void PbrtMaterials::mix(Making& m) {
 }
 
 void PbrtMaterials::measured(Making& m) {
-    m.params.find("filename");
-    m.node().word("diffuse");
-    shared_.out.leftOut(&m.node(), m.params.directive, "a measured material",
-                        "measured BSDF files are not read; it is grey and matte");
+    const std::string file = m.params.text("filename", "", shared_.faults());
+    if (file.empty()) {
+        shared_.faults().error("E0802", m.params.directive, "`measured` needs a `filename`");
+        m.node().word("diffuse");
+        return;
+    }
+    m.material.isStretched = true; // perhaps: files may be of brushed surfaces
+    m.node().word("measured").text(shared_.out.files.refer(shared_.file(file)));
 }
 
 void PbrtMaterials::surface(Making& m) {

@@ -277,6 +277,13 @@ PbrtMaterialText makeSubsurface(const StatedThing& m, PbrtWriter& w) {
     return made;
 }
 
+PbrtMaterialText makeMeasuredFile(const StatedThing& m, PbrtWriter& w) {
+    PbrtMaterialText made{"measured", {}};
+    if (const auto* const file = m.value<schema::Text>("file"))
+        made.list.text("string", "filename", w.out.files.refer(file->value));
+    return made;
+}
+
 PbrtMaterialText makeInterface(const StatedThing&, PbrtWriter&) { return {"interface", {}}; }
 
 // Metal, glass or a coat over a matte base, whichever weighs most.
@@ -323,6 +330,7 @@ constexpr PbrtMaterialRow kPbrtMaterialRows[] = {
     {"hair", makeHair},
     {"diffuse-transmission", makeSheet},
     {"subsurface", makeSubsurface},
+    {"measured", makeMeasuredFile},
     {"boundary", makeInterface},
     {"openpbr", makeFromOpenPbr},
     {"sheen", makeSheenMatte},

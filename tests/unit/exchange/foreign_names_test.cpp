@@ -65,7 +65,7 @@ TEST_CASE("names: Mitsuba's BSDFs") {
                   {"diffuse"},
                   {"hair", "W0802"},
                   {"mask", "", kGrey},
-                  {"measured", "W0801", kNoFile},
+                  {"measured", "E0401", kNoFile},
                   {"measured_polarized", "W0801", kNoFile},
                   {"normalmap", "", "<texture type=\"checkerboard\"/><bsdf type=\"diffuse\"/>"},
                   {"null"},
@@ -232,7 +232,7 @@ TEST_CASE("names: pbrt's world") {
                {"diffusetransmission"},
                {"hair"},
                {"interface"},
-               {"measured", "W0801", "\"string filename\" \"none.bsdf\""},
+               {"measured", "", "\"string filename\" \"none.bsdf\""},
                {"subsurface", "W0802"},
                {"thindielectric"}});
     checkPbrt(begin + "LightSource ", "\n",

@@ -191,8 +191,8 @@ TEST_CASE("what has no counterpart is said, and stands in the scene") {
         CHECK(made.codes == "W0801");
         CHECK(holds(made.messages, shape));
     }
-    CHECK(importText(ball("<bsdf type=\"measured\"><string name=\"filename\" value=\"a.bsdf\"/></bsdf>")).codes ==
-          "W0801");
+    CHECK(importText(ball("<bsdf type=\"measured_polarized\"><string name=\"filename\" value=\"a.pbsdf\"/></bsdf>"))
+              .codes == "W0801");
     CHECK(
         importText(scene("<emitter type=\"projector\"><texture type=\"checkerboard\" name=\"irradiance\"/></emitter>"))
             .codes == "W0801");
