@@ -33,7 +33,7 @@ class MeasuredBsdf final : public Bsdf {
     MeasuredBsdf(const MeasuredTables& tables, const Wavelengths& wavelengths, double scale)
         : tables_(tables), scale_(scale) {
         for (int lane = 0; lane < kLanes; ++lane)
-            lanes_[static_cast<std::size_t>(lane)] = placeInGrid(tables.wavelengths, wavelengths.nm[lane]);
+            lanes_[static_cast<std::size_t>(lane)] = placeOnAxis(tables.wavelengths, wavelengths.nm[lane]);
     }
 
     Lobes lobes() const noexcept override { return Lobes(Lobe::glossy) | Lobe::reflection; }
@@ -81,7 +81,7 @@ class MeasuredBsdf final : public Bsdf {
         double phi, theta;
         double flipX, flipY; // ±1
         TableBlend blend;
-        GridPlace phiPlace, thetaPlace;
+        AxisPlace phiPlace, thetaPlace;
     };
 
     View viewed(Vec3 direction) const {
@@ -100,8 +100,8 @@ class MeasuredBsdf final : public Bsdf {
         v.wo = turned(v, Vec3(v.wo));
         v.theta = elevation(v.wo);
         v.phi = std::atan2(v.wo.y, v.wo.x);
-        v.phiPlace = placeInGrid(tables_.phi, v.phi);
-        v.thetaPlace = placeInGrid(tables_.theta, v.theta);
+        v.phiPlace = placeOnAxis(tables_.phi, v.phi);
+        v.thetaPlace = placeOnAxis(tables_.theta, v.theta);
         v.blend = blendTables(v.phiPlace, v.thetaPlace, tables_.theta.size());
         return v;
     }
@@ -116,7 +116,7 @@ class MeasuredBsdf final : public Bsdf {
         const BilinearCell cell(place, tables_.side, tables_.side);
         alignas(32) std::array<float, kLanes> values{};
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const GridPlace& at = lanes_[lane];
+            const AxisPlace& at = lanes_[lane];
             double value = (1 - at.fraction) * slice(view.blend, at.index, cell);
             if (at.fraction > 0) value += at.fraction * slice(view.blend, at.index + 1, cell);
             values[lane] = static_cast<float>(value * factor);
@@ -143,7 +143,7 @@ class MeasuredBsdf final : public Bsdf {
     static constexpr int kLanes = 8;
     const MeasuredTables& tables_;
     double scale_;
-    std::array<GridPlace, kLanes> lanes_;
+    std::array<AxisPlace, kLanes> lanes_;
 };
 
 class Measured final : public Material {

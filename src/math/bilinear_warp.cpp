@@ -32,7 +32,7 @@ template <typename SumAt> std::size_t cellBelow(std::size_t n, double aim, const
 
 } // namespace
 
-GridPlace placeInGrid(std::span<const float> values, double x) noexcept {
+AxisPlace placeOnAxis(std::span<const float> values, double x) noexcept {
     if (values.size() < 2 || !(x > values.front())) return {};
     if (x >= values.back()) return {values.size() - 2, 1};
     const auto above = std::upper_bound(values.begin(), values.end(), x);
@@ -40,7 +40,7 @@ GridPlace placeInGrid(std::span<const float> values, double x) noexcept {
     return {index, (x - values[index]) / (values[index + 1] - values[index])};
 }
 
-TableBlend blendTables(GridPlace first, GridPlace second, std::size_t seconds) noexcept {
+TableBlend blendTables(AxisPlace first, AxisPlace second, std::size_t seconds) noexcept {
     TableBlend b;
     for (const std::size_t i : {0u, 1u})
         for (const std::size_t j : {0u, 1u}) {

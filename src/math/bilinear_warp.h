@@ -14,11 +14,11 @@ namespace abbe {
 
 // Where a number is among values that increase: between `index` and the next, `fraction` of the way. What lies outside
 // counts as the nearer end.
-struct GridPlace {
+struct AxisPlace {
     std::size_t index = 0;
     double fraction = 0; // 0 of a single value
 };
-GridPlace placeInGrid(std::span<const float> values, double x) noexcept;
+AxisPlace placeOnAxis(std::span<const float> values, double x) noexcept;
 
 // Which tables a density is made of, and how much of each; two numbers that it depends on.
 struct TableBlend {
@@ -27,7 +27,7 @@ struct TableBlend {
     int count = 0;
 };
 // The first number changes slowest: table (first, second) is first · seconds + second.
-TableBlend blendTables(GridPlace first, GridPlace second, std::size_t seconds) noexcept;
+TableBlend blendTables(AxisPlace first, AxisPlace second, std::size_t seconds) noexcept;
 
 class BilinearWarp {
   public:

@@ -57,12 +57,12 @@ TEST_CASE("a bilinear warp: the Jacobian of its map, and ∫ density = 1") {
 
 TEST_CASE("places among values, and what lies outside") {
     const std::vector<float> values = {1, 2, 4};
-    CHECK(placeInGrid(values, 3).index == 1);
-    CHECK(placeInGrid(values, 3).fraction == 0.5);
-    CHECK(placeInGrid(values, 0).fraction == 0);
-    CHECK(placeInGrid(values, 9).index == 1);
-    CHECK(placeInGrid(values, 9).fraction == 1);
-    CHECK(placeInGrid(std::vector<float>{5}, 9).fraction == 0);
+    CHECK(placeOnAxis(values, 3).index == 1);
+    CHECK(placeOnAxis(values, 3).fraction == 0.5);
+    CHECK(placeOnAxis(values, 0).fraction == 0);
+    CHECK(placeOnAxis(values, 9).index == 1);
+    CHECK(placeOnAxis(values, 9).fraction == 1);
+    CHECK(placeOnAxis(std::vector<float>{5}, 9).fraction == 0);
 }
 
 } // namespace
