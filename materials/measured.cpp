@@ -1,7 +1,6 @@
 #include "materials/measured.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -32,8 +31,13 @@ class MeasuredBsdf final : public Bsdf {
   public:
     MeasuredBsdf(const MeasuredTables& tables, const Wavelengths& wavelengths, double scale)
         : tables_(tables), scale_(scale) {
-        for (int lane = 0; lane < kLanes; ++lane)
-            lanes_[static_cast<std::size_t>(lane)] = placeOnAxis(tables.wavelengths, wavelengths.nm[lane]);
+        const int last = static_cast<int>(tables.wavelengths.size()) - 1;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const AxisPlace place = placeOnAxis(tables.wavelengths, wavelengths.nm[lane]);
+            lower_[lane] = static_cast<int>(place.index);
+            upper_[lane] = std::min(lower_[lane] + 1, last);
+            fraction_.v[lane] = static_cast<float>(place.fraction);
+        }
     }
 
     Lobes lobes() const noexcept override { return Lobes(Lobe::glossy) | Lobe::reflection; }
@@ -113,37 +117,33 @@ class MeasuredBsdf final : public Bsdf {
         double factor = scale_;
         if (tables_.scalesByFacets)
             factor *= tables_.facets.at(half) / (4 * tables_.projected.at({uOfTheta(view.theta), uOfPhi(view.phi)}));
-        const BilinearCell cell(place, tables_.side, tables_.side);
-        alignas(32) std::array<float, kLanes> values{};
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const AxisPlace& at = lanes_[lane];
-            double value = (1 - at.fraction) * slice(view.blend, at.index, cell);
-            if (at.fraction > 0) value += at.fraction * slice(view.blend, at.index + 1, cell);
-            values[lane] = static_cast<float>(value * factor);
-        }
-        Float8 lanes;
-        for (int lane = 0; lane < kLanes; ++lane) lanes[lane] = values[static_cast<std::size_t>(lane)];
-        return Spectrum(lanes);
+        const std::size_t side = tables_.side;
+        const BilinearCell cell(place, side, side);
+        Spectrum sum(0.f);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(view.blend.count); ++i)
+            for (const std::size_t down : {0u, 1u})
+                for (const std::size_t across : {0u, 1u}) {
+                    const double weight = view.blend.weight[i] * (down ? cell.down : 1 - cell.down) *
+                                          (across ? cell.across : 1 - cell.across) * factor;
+                    const std::size_t at = (view.blend.table[i] * side + cell.row + down) * side + cell.column + across;
+                    sum += curve(at) * static_cast<float>(weight);
+                }
+        return sum;
     }
 
-    double slice(const TableBlend& b, std::size_t wavelength, const BilinearCell& cell) const {
-        const std::size_t side = tables_.side;
-        double sum = 0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(b.count); ++i) {
-            const float* v = tables_.spectra.data() +
-                             (b.table[i] * tables_.wavelengths.size() + wavelength) * side * side + cell.row * side +
-                             cell.column;
-            const double above = std::lerp(double(v[0]), double(v[1]), cell.across),
-                         below = std::lerp(double(v[side]), double(v[side + 1]), cell.across);
-            sum += b.weight[i] * std::lerp(above, below, cell.down);
-        }
-        return sum;
+    // At one of the tabulated places.
+    Spectrum curve(std::size_t at) const {
+        const float* v = tables_.spectra.data() + at * tables_.wavelengths.size();
+        const Spectrum low(_mm256_i32gather_ps(v, reinterpret_cast<__m256i>(lower_), sizeof(float))),
+            high(_mm256_i32gather_ps(v, reinterpret_cast<__m256i>(upper_), sizeof(float)));
+        return fma(fraction_, high - low, low);
     }
 
     static constexpr int kLanes = 8;
     const MeasuredTables& tables_;
     double scale_;
-    std::array<AxisPlace, kLanes> lanes_;
+    Int8 lower_{}, upper_{}; // which tabulated wavelengths a lane is between
+    Spectrum fraction_;
 };
 
 class Measured final : public Material {

@@ -31,7 +31,7 @@ struct MeasuredTables {
     bool scalesByFacets = true;      // the spectra are to be multiplied by D / (4 σ)
     MeasuredGrid facets, projected;  // D, by the half vector; σ, by direction
     BilinearWarp visible, luminance; // by phi and theta: of half vectors; of what `visible` makes uniform
-    std::vector<float> spectra;      // by phi, theta, wavelength and such a place: f cos θ but for the factor above
+    std::vector<float> spectra;      // by phi, theta, such a place and wavelength: f cos θ but for the factor above
     std::size_t side = 0;            // such places in a row, and rows
 };
 

@@ -78,11 +78,18 @@ MeasuredTables readMeasured(const std::string& path) {
     const std::vector<std::size_t> views = {t.phi.size(), t.theta.size()};
     t.visible = warp(file, "vndf", views);
     t.luminance = warp(file, "luminance", views);
-    t.spectra = amounts(file, "spectra", 5, true);
+    const std::vector<float> spectra = amounts(file, "spectra", 5, true);
     checkShape(file, "spectra", {t.phi.size(), t.theta.size(), t.wavelengths.size()});
     t.side = file["spectra"].shape[4];
     if (file["spectra"].shape[3] != t.side) failMeasured(file, "`spectra` is not square");
-    for (float& v : t.spectra) v = std::max(v, 0.f); // noise of the measurement about nothing
+    // Wavelengths side by side, which are looked up together. Values below 0 are noise of the measurement about
+    // nothing.
+    const std::size_t n = t.wavelengths.size(), places = t.side * t.side;
+    t.spectra.resize(spectra.size());
+    for (std::size_t i = 0; i < spectra.size(); ++i) {
+        const std::size_t view = i / (n * places), wavelength = i / places % n, place = i % places;
+        t.spectra[(view * places + place) * n + wavelength] = std::max(spectra[i], 0.f);
+    }
     const Tensor& jacobian = file["jacobian"];
     t.scalesByFacets = !jacobian.bytes.empty() && jacobian.bytes.front() != 0;
     t.isotropic = t.phi.size() <= 2;
