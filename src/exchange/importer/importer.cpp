@@ -56,7 +56,7 @@ std::optional<std::string> importScene(const ImportFormat& format, const std::fi
     header.number(1).key("length", "m");
     header.remark(fmt::format("Imported from {}, {}.", foreign.filename().string(), format.what));
     import.nodes.push_front(std::move(header));
-    return printScene(import.nodes);
+    return printScene(std::move(import.nodes));
 }
 
 bool isModel(const std::filesystem::path& path) {
@@ -72,7 +72,7 @@ std::optional<ModelText> importModel(const std::filesystem::path& file, const st
     const bool gltf = isGltfScene(file, headOf(file));
     (gltf ? importGltf : importObj)(file, import);
     if (diagnostics.errorCount() > before) return std::nullopt;
-    return ModelText{printScene(import.nodes), files.read(), gltf};
+    return ModelText{printScene(std::move(import.nodes)), files.read(), gltf};
 }
 
 } // namespace abbe::exchange

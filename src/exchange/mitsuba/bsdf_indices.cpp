@@ -32,7 +32,7 @@ double indexOf(const XmlObject& bsdf, std::string_view param, double otherwise, 
     if (!found) return otherwise;
     if (found->numbers.size() == 1) return found->numbers[0];
     if (found->tag == "string") {
-        std::string name = found->text;
+        std::string name(found->text);
         std::ranges::transform(name, name.begin(),
                                [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
         std::vector<std::string_view> names;
@@ -85,7 +85,7 @@ double relativeIndex(const XmlObject& bsdf, double defaultInside, MitsubaContext
 
 void writeMetalIndex(SceneNode& at, std::string property, const XmlObject& bsdf, MitsubaContext& ctx) {
     const XmlParam* const material = bsdf.find("material");
-    const std::string name = material ? material->text : "none";
+    const std::string_view name = material ? material->text : "none";
     const double outside = bsdf.has("ext_eta") ? indexOf(bsdf, "ext_eta", 1, ctx) : 1;
     SceneNode& index = at.child(std::move(property));
     if (!bsdf.has("eta") && name != "none") {

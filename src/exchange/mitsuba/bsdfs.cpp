@@ -283,7 +283,7 @@ void writeUnknown(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, 
 }
 
 void writeKnown(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
-    const std::string& type = bsdf.plugin;
+    const std::string_view type = bsdf.plugin;
     if (type == "diffuse") return writeDiffuse(at, bsdf, traits, ctx);
     if (type == "conductor" || type == "roughconductor")
         return writeConductor(at, bsdf, type != "conductor", traits, ctx);
@@ -355,7 +355,8 @@ const std::pair<std::string, MaterialTraits>& materialOf(const XmlObject& bsdf, 
         warnOfUnused(bsdf, ctx.import);
         return keep("boundary", none);
     }
-    const std::string name = ctx.materialNames.take(bsdf.id, bsdf.plugin + "-material");
+    const std::string name =
+        ctx.materialNames.take(bsdf.id, bsdf.id.empty() ? std::string(bsdf.plugin) + "-material" : std::string());
     SceneNode made("material");
     made.name(name);
     MaterialTraits traits;

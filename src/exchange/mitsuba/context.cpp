@@ -39,7 +39,7 @@ bool mitsubaFlag(const XmlObject& object, std::string_view name, bool otherwise,
     const XmlParam* const param = object.find(name);
     if (!param) return otherwise;
     if (param->tag == "boolean") {
-        std::string word = param->text;
+        std::string word(param->text);
         std::ranges::transform(word, word.begin(),
                                [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
         if (word == "true" || word == "1") return true;
@@ -51,7 +51,7 @@ bool mitsubaFlag(const XmlObject& object, std::string_view name, bool otherwise,
 
 std::string mitsubaText(const XmlObject& object, std::string_view name, std::string_view otherwise) {
     const XmlParam* const param = object.find(name);
-    return param && param->tag == "string" ? param->text : std::string(otherwise);
+    return std::string(param && param->tag == "string" ? param->text : otherwise);
 }
 
 std::optional<Vec3d> mitsubaVector(const XmlObject& object, std::string_view name, Import& import) {

@@ -245,7 +245,7 @@ void writeShapeEmitter(SceneNode& node, const XmlObject& emitter, const XmlObjec
 }
 
 void convertEmitter(const XmlObject& emitter, MitsubaContext& ctx) {
-    const std::string& type = emitter.plugin;
+    const std::string_view type = emitter.plugin;
     mitsubaIgnore(emitter, {"sampling_weight"});
     if (type == "constant")
         convertConstant(emitter, ctx);

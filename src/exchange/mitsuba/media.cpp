@@ -76,7 +76,7 @@ bool writeMedium(SceneNode& medium, const XmlObject& object, MitsubaContext& ctx
 } // namespace
 
 void writePhase(SceneNode& at, const XmlObject& phase, int depth, MitsubaContext& ctx) {
-    const std::string& type = phase.plugin;
+    const std::string_view type = phase.plugin;
     if (depth > kMostNestedPhases) {
         ctx.import.diagnostics.error("E0802", phase.span, "too many phase functions inside of each other");
         at.word("isotropic");

@@ -110,7 +110,7 @@ Strands readStrands(const std::string& text) {
 
 ShapeForm writeMesh(SceneNode& node, MeshData mesh, const XmlObject& shape, MitsubaContext& ctx) {
     notePoints(mesh, shape, ctx);
-    const std::string stem = shape.id.empty() ? shape.plugin : shape.id;
+    const std::string_view stem = shape.id.empty() ? shape.plugin : shape.id;
     node.word("mesh").text(ctx.import.files.write(stem, "ply", binaryPly(mesh)));
     writeTransform(node, mitsubaTransform(shape));
     return {true, false};

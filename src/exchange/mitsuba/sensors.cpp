@@ -93,7 +93,7 @@ void noteClipping(SceneNode& camera, const XmlObject& sensor, MitsubaContext& ct
 }
 
 bool writeCamera(SceneNode& camera, const XmlObject& sensor, const MitsubaFilm& film, MitsubaContext& ctx) {
-    const std::string& type = sensor.plugin;
+    const std::string_view type = sensor.plugin;
     if (type == "perspective" || type == "thinlens") {
         camera.word("perspective");
         placeCamera(camera, mitsubaTransform(sensor).then(ctx.mirror.value_or(Transform{})));
@@ -118,7 +118,7 @@ bool writeCamera(SceneNode& camera, const XmlObject& sensor, const MitsubaFilm& 
 
 void writeFilter(SceneNode& film, const XmlObject* filter, MitsubaContext& ctx) {
     SceneNode& node = film.child("filter");
-    const std::string type = filter ? filter->plugin : "gaussian";
+    const std::string_view type = filter ? filter->plugin : "gaussian";
     if (type == "box")
         node.word("box").number(0.5);
     else if (type == "tent")
@@ -246,7 +246,7 @@ void convertSensors(std::vector<const XmlObject*> sensors, MitsubaContext& ctx) 
 }
 
 void readIntegrator(const XmlObject& integrator, MitsubaContext& ctx) {
-    const std::string& type = integrator.plugin;
+    const std::string_view type = integrator.plugin;
     constexpr int kMostNestedIntegrators = 16;
     if (++ctx.depth <= kMostNestedIntegrators)
         for (const XmlObject* inner : integrator.objects("integrator")) readIntegrator(*inner, ctx);

@@ -25,12 +25,11 @@ void writeShapeMaterial(SceneNode& node, const XmlObject* bsdf, const MaterialTr
         node.child("material").word("diffuse").child("reflectance").number(0.5);
         return;
     }
-    const std::string name = bsdf ? materialOf(*bsdf, ctx).first : std::string();
     SceneNode& material = node.child("material");
     const bool blackBehind = !closed && (!bsdf || traits.oneSided);
     SceneNode& front = blackBehind ? material.word("two-sided").child("front") : material;
     if (bsdf)
-        front.name(name);
+        front.name(materialOf(*bsdf, ctx).first);
     else
         front.word("diffuse").child("reflectance").number(0.5);
     if (blackBehind) material.child("back").word("diffuse").child("reflectance").number(0);
@@ -328,7 +327,7 @@ void turnCoordinates(MeshData& mesh, const MaterialTraits& traits) {
 }
 
 ShapeForm writeGeometry(SceneNode& node, const XmlObject& shape, const MaterialTraits& traits, MitsubaContext& ctx) {
-    const std::string& type = shape.plugin;
+    const std::string_view type = shape.plugin;
     mitsubaIgnore(shape, {"silhouette_sampling_weight", "id"});
     if (type == "rectangle" || type == "cube") return writeFlat(node, shape, traits, ctx);
     if (type == "sphere") return writeSphere(node, shape, traits, ctx);

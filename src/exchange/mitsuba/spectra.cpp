@@ -69,7 +69,7 @@ std::optional<MitsubaSpectrum> spectrumFile(const XmlParam& named, MitsubaContex
 
 // "400:0.1, 700:0.3"
 std::optional<MitsubaSpectrum> inlineTable(const XmlParam& param, MitsubaContext& ctx) {
-    std::string text = param.text;
+    std::string text(param.text);
     std::ranges::replace(text, ':', ' ');
     const auto numbers = xmlNumbers(text);
     if (!numbers || numbers->size() % 2 != 0) {
@@ -141,7 +141,7 @@ MitsubaSpectrum blackbody(const XmlObject& object, MitsubaContext& ctx) {
 }
 
 std::optional<MitsubaSpectrum> spectrumPlugin(const XmlObject& object, SpectrumUse use, MitsubaContext& ctx) {
-    const std::string& type = object.plugin;
+    const std::string_view type = object.plugin;
     if (type == "uniform") {
         mitsubaIgnore(object, {"wavelength_min", "wavelength_max"});
         return flatSpectrum(mitsubaNumber(object, "value", 1, ctx.import));
@@ -192,7 +192,7 @@ std::optional<MitsubaSpectrum> readSpectrum(const XmlParam& param, SpectrumUse u
         return found;
     }
     if (param.tag == "blackbody") {
-        std::string text = param.text;
+        std::string text(param.text);
         std::erase_if(text, [](char c) { return c == 'K' || c == 'k'; });
         const auto kelvin = xmlNumbers(text);
         if (!kelvin || kelvin->size() != 1) {

@@ -1,6 +1,8 @@
 #include "exchange/mitsuba/xml_object.h"
 
 #include <algorithm>
+#include <new>
+#include <type_traits>
 
 namespace abbe::exchange {
 
@@ -23,6 +25,17 @@ std::vector<const XmlObject*> XmlObject::objects(std::string_view wanted) const 
             list.push_back(param.object);
         }
     return list;
+}
+
+std::string_view XmlScene::keep(std::string_view text) {
+    char* const place = static_cast<char*>(memory->allocate(text.size(), 1));
+    std::ranges::copy(text, place);
+    return {place, text.size()};
+}
+
+const Transform* XmlScene::keep(const Transform& map) {
+    static_assert(std::is_trivially_destructible_v<Transform>);
+    return new (memory->allocate(sizeof(Transform), alignof(Transform))) Transform(map);
 }
 
 } // namespace abbe::exchange

@@ -53,7 +53,7 @@ class XmlReader {
     Diagnostic& fault(const char* code, pugi::xml_node node, std::string text) {
         return import_.diagnostics.error(code, spanOf(node), std::move(text));
     }
-    // Stays until the file is read.
+    // Stays as long as the scene.
     std::string_view attribute(pugi::xml_node node, const char* name);
     std::string replaced(pugi::xml_node node, std::string text);
     XmlObject* object(pugi::xml_node node, int depth);
@@ -71,10 +71,9 @@ class XmlReader {
     Import& import_;
     std::map<std::string, std::string, std::less<>> defaults_;
     std::unordered_map<std::string_view, const XmlObject*> ids_;
-    std::vector<std::pair<std::string, std::string>> aliases_; // of an id, and the other name
+    std::vector<std::pair<std::string_view, std::string_view>> aliases_; // of an id, and the other name
     std::vector<Reference> references_;
-    std::deque<std::string> replaced_; // attributes whose `$name` were replaced
-    std::vector<fs::path> open_;       // files that are being read
+    std::vector<fs::path> open_; // files that are being read
     std::size_t files_ = 0;
     XmlVersion version_;
     FileId file_ = FileId::none;
@@ -110,7 +109,7 @@ std::string XmlReader::replaced(pugi::xml_node node, std::string text) {
 
 std::string_view XmlReader::attribute(pugi::xml_node node, const char* name) {
     const std::string_view text = node.attribute(name).value();
-    return text.find('$') == std::string_view::npos ? text : replaced_.emplace_back(replaced(node, std::string(text)));
+    return text.find('$') == std::string_view::npos ? text : scene_.keep(replaced(node, std::string(text)));
 }
 
 // Attributes x, y and z, those that are not there as 0.
@@ -150,7 +149,7 @@ void XmlReader::numbers(pugi::xml_node node, XmlParam& param) {
 
 void XmlReader::transform(pugi::xml_node node, XmlParam& param) {
     Transform map;
-    for (const pugi::xml_node step : node.children()) {
+    for (pugi::xml_node step = node.first_child(); step; step = step.next_sibling()) {
         if (step.type() != pugi::node_element) continue;
         const XmlStep done = xmlStep(step.name(), [&](const char* name) { return attribute(step, name); });
         if (!done.fault.empty()) {
@@ -163,7 +162,7 @@ void XmlReader::transform(pugi::xml_node node, XmlParam& param) {
         fault("E0802", node, "the transform has numbers that are not finite");
         map = {};
     }
-    param.transform = std::make_unique<Transform>(map);
+    param.transform = scene_.keep(map);
 }
 
 void XmlReader::parameter(pugi::xml_node node, XmlParam& param) {
@@ -192,7 +191,7 @@ void XmlReader::parameter(pugi::xml_node node, XmlParam& param) {
 }
 
 XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
-    XmlObject& made = scene_.objects.emplace_back();
+    XmlObject& made = scene_.objects.emplace_back(scene_.memory.get());
     made.tag = node.name();
     made.plugin = attribute(node, "type");
     made.id = attribute(node, "id");
@@ -202,11 +201,12 @@ XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
         fault("E0802", node, fmt::format("this `{}` has no `type`", made.tag));
     if (!made.id.empty() && !ids_.emplace(made.id, &made).second)
         fault("E0802", node, fmt::format("two objects have the id `{}`", made.id));
-    const auto children = node.children();
-    made.params.reserve(static_cast<std::size_t>(std::distance(children.begin(), children.end())));
-    for (const pugi::xml_node inner : children)
+    std::size_t children = 0;
+    for (pugi::xml_node inner = node.first_child(); inner; inner = inner.next_sibling()) ++children;
+    made.params.reserve(children);
+    for (pugi::xml_node inner = node.first_child(); inner; inner = inner.next_sibling())
         if (inner.type() == pugi::node_element) child(inner, made, depth + 1);
-    upgradeXmlObject(made, version_);
+    upgradeXmlObject(made, version_, scene_);
     made.complete = true;
     return &made;
 }
@@ -290,9 +290,11 @@ void XmlReader::file(const fs::path& path, Span from, XmlObject* into, int depth
     file_ = import_.sources.add(path.string(), bytes.readAll());
     folder_ = path.parent_path();
     open_.push_back(path);
-    pugi::xml_document document;
     const std::string_view text = import_.sources.text(file_);
-    constexpr std::size_t kOfId = 500; // bytes of text for each, as scenes of millions of them have
+    const auto kept = std::make_shared<pugi::xml_document>();
+    scene_.files.push_back(kept);
+    pugi::xml_document& document = *kept;
+    constexpr std::size_t kOfId = 250; // bytes of text for each, as scenes of millions of them have
     ids_.reserve(ids_.size() + text.size() / kOfId);
     const auto parsed = document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!parsed) {

@@ -23,7 +23,7 @@ double takeNumber(XmlObject& object, std::string_view name, double otherwise) {
     return found && !found->numbers.empty() ? found->numbers[0] : otherwise;
 }
 
-void upgradeTexture(XmlObject& object) {
+void upgradeTexture(XmlObject& object, XmlScene& scene) {
     if (object.tag != "texture") return;
     if (!object.has("uoffset") && !object.has("voffset") && !object.has("uscale") && !object.has("vscale")) return;
     XmlParam map;
@@ -31,9 +31,10 @@ void upgradeTexture(XmlObject& object) {
     map.name = "to_uv";
     map.span = object.span;
     const double u = takeNumber(object, "uscale", 1), v = takeNumber(object, "vscale", 1);
-    map.transform = std::make_unique<Transform>(Transform::scale({u, v, 1}));
-    map.transform->t = {takeNumber(object, "uoffset", 0), takeNumber(object, "voffset", 0), 0};
-    object.params.push_back(std::move(map));
+    Transform place = Transform::scale({u, v, 1});
+    place.t = {takeNumber(object, "uoffset", 0), takeNumber(object, "voffset", 0), 0};
+    map.transform = scene.keep(place);
+    object.params.push_back(map);
 }
 
 } // namespace
@@ -47,13 +48,13 @@ XmlVersion xmlVersion(std::string_view text, XmlVersion otherwise) {
     return version;
 }
 
-void upgradeXmlObject(XmlObject& object, XmlVersion version) {
+void upgradeXmlObject(XmlObject& object, XmlVersion version, XmlScene& scene) {
     if (version.major >= 2) return;
     for (XmlParam& param : object.params) {
-        param.name = snakeCase(param.name);
+        if (const std::string name = snakeCase(param.name); name != param.name) param.name = scene.keep(name);
         if (object.plugin == "diffuse" && param.name == "diffuse_reflectance") param.name = "reflectance";
     }
-    upgradeTexture(object);
+    upgradeTexture(object, scene);
     if (object.plugin == "sky" || object.plugin == "sun" || object.plugin == "sunsky") {
         XmlParam& up = object.params.emplace_back();
         up.name = kSkyWithYUp;

@@ -183,7 +183,8 @@ SceneNode& SceneNode::remark(std::string_view text) {
 // Writes nodes behind each other into one text. A node is tried on one line, and taken back where it does not fit.
 class ScenePrinter {
   public:
-    explicit ScenePrinter(std::size_t room) { out_.reserve(room); }
+    // Writes behind what the text holds.
+    explicit ScenePrinter(std::string& text) : out_(text) {}
 
     void file(const SceneNode& node, const SceneNode* before) {
         const bool apart = before && (before->name_ != node.name_ || !node.remarks_.empty() || wasBlock_);
@@ -195,7 +196,6 @@ class ScenePrinter {
             out_ += node.values_, wasBlock_ = node.form_ == SceneNode::Form::block;
         if (before && !apart && wasBlock_) out_.insert(begin, 1, '\n');
     }
-    std::string take() { return std::move(out_); }
 
     // Whether it took more than one line, or a longer one than others have.
     bool print(const SceneNode& node, std::size_t indent) {
@@ -255,30 +255,48 @@ class ScenePrinter {
         end();
     }
 
-    std::string out_;
+    std::string& out_;
     bool wasBlock_ = false;
 };
 
 void SceneNode::settle() {
     if (form_ != Form::parts) return;
-    constexpr std::size_t kOfNode = 400;
-    ScenePrinter printer(kOfNode);
-    form_ = printer.print(*this, 0) ? Form::block : Form::line;
-    values_ = printer.take();
-    values_.shrink_to_fit();
+    thread_local std::string text; // its memory serves the next node
+    text.clear();
+    form_ = ScenePrinter(text).print(*this, 0) ? Form::block : Form::line;
+    values_ = text;
+    constexpr std::size_t kMostKept = 1 << 20;
+    if (text.capacity() > kMostKept) std::string().swap(text);
     children_.clear();
     if (!remarks_.empty()) remarks_.resize(1); // whether there are any still counts
 }
 
 template <typename Nodes> std::string printed(const Nodes& nodes) {
-    ScenePrinter printer(0);
+    std::string text;
+    ScenePrinter printer(text);
     const SceneNode* before = nullptr;
     for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
-    return printer.take();
+    return text;
 }
 
 std::string printScene(std::span<const SceneNode> nodes) { return printed(nodes); }
 
 std::string printScene(const std::list<SceneNode>& nodes) { return printed(nodes); }
+
+std::string printScene(std::list<SceneNode>&& nodes) {
+    std::size_t room = 0;
+    for (const SceneNode& node : nodes) room += node.values().size() + 2; // the whole text of settled ones
+    std::string text;
+    text.reserve(room);
+    ScenePrinter printer(text);
+    const SceneNode* before = nullptr;
+    for (auto node = nodes.begin(); node != nodes.end(); ++node) {
+        printer.file(*node, before);
+        if (before) nodes.pop_front();
+        before = &*node;
+    }
+    nodes.clear();
+    return text;
+}
 
 } // namespace abbe::exchange

@@ -70,5 +70,7 @@ std::string numberText(double);
 // on one line of at most 120 characters, rows of numbers several to a line; blocks are indented by four spaces.
 std::string printScene(std::span<const SceneNode> nodes);
 std::string printScene(const std::list<SceneNode>& nodes);
+// The same; the memory of each node is given back as soon as it is printed.
+std::string printScene(std::list<SceneNode>&& nodes);
 
 } // namespace abbe::exchange
