@@ -35,14 +35,18 @@ function(abbe_shareable)
     endforeach()
 endfunction()
 
-# abbe_library(name folder GROUP … DEPS … PRIVATE_DEPS …): the library of one folder, abbe::name. A folder without
-# sources (render: interfaces only) becomes an INTERFACE library. Project includes are written from the
-# top: "base/check.h" for src/base, "parser/scanner.h", "materials/diffuse.h".
+# abbe_library(name folder WITHOUT … GROUP … DEPS … PRIVATE_DEPS …): the library of one folder, abbe::name, but for the
+# folders in it that are libraries of their own. A folder without sources (render: interfaces only) becomes an INTERFACE
+# library. Project includes are written from the top: "base/check.h" for src/base, "parser/scanner.h",
+# "materials/diffuse.h".
 # With ABBE_GROUPS all folders of a group are compiled as one unit, because every unit reads the standard library's
 # headers again; then abbe::name only stands for what it needs. Names in anonymous namespaces are unique within a group.
 function(abbe_library name folder)
-    cmake_parse_arguments(A "" "GROUP" "DEPS;PRIVATE_DEPS" ${ARGN})
+    cmake_parse_arguments(A "" "GROUP" "WITHOUT;DEPS;PRIVATE_DEPS" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+    foreach(part IN LISTS A_WITHOUT)
+        list(FILTER sources EXCLUDE REGEX "/${folder}/${part}/")
+    endforeach()
     list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
     if(A_GROUP AND ABBE_GROUPS AND ABBE_UNITY)
         set_property(GLOBAL PROPERTY abbe_group_of_${name} ${A_GROUP})

@@ -30,6 +30,13 @@ function librariesOf(cmake) {
             .map(e => e.name).filter(n => n !== "data").sort();
         libraries.set(name, {name, folder, inner, below});
     }
+    // Folders inside of one that is drawn are named there, whether or not they are libraries of their own.
+    const all = [...libraries.values()];
+    const drawn = l => all.find(other => l.folder.startsWith(`${other.folder}/`)) ?? l;
+    for (const l of all) drawn(l).below.push(...l.below);
+    for (const l of all) if (drawn(l) !== l) libraries.delete(l.name);
+    const nameDrawn = new Map(all.map(l => [l.name, drawn(l).name]));
+    for (const l of libraries.values()) l.below = [...new Set(l.below.map(b => nameDrawn.get(b) ?? b))].filter(b => b !== l.name);
     return libraries;
 }
 

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 #include <limits>
+#include <list>
+#include <string>
+#include <utility>
 
 using namespace abbe;
 using namespace abbe::exchange;
@@ -59,6 +62,29 @@ TEST_CASE("a remark has one line for each of its own, without what comments may 
     SceneNode node("film");
     node.remark("one\ntwo\x02 \u202e!\n");
     CHECK(printed(node) == "// one\n// two !\nfilm\n");
+}
+
+TEST_CASE("nodes that are given away, printed before or not, print the same") {
+    const auto some = [](bool settle) {
+        std::list<SceneNode> nodes;
+        nodes.emplace_back("scene").number(1);
+        for (int i = 0; i < 3; ++i) {
+            SceneNode& shape = nodes.emplace_back("shape").name("a").word("mesh");
+            if (i == 1) shape.remark("the second");
+            for (int k = 0; k < 40 * i; ++k) shape.child("points").vector({1, 2, 3});
+            if (settle) shape.settle();
+        }
+        nodes.emplace_back("film");
+        return nodes;
+    };
+    const std::string text = printScene(some(false));
+    CHECK(text.find("\n\n// the second\nshape a mesh {\n    points 1 2 3\n") != std::string::npos);
+    const std::list<SceneNode> kept = some(false), settled = some(true);
+    CHECK(printScene(kept) == text);
+    CHECK(printScene(settled) == text);
+    std::list<SceneNode> given = some(true);
+    CHECK(printScene(std::move(given)) == text);
+    CHECK(printScene(std::list<SceneNode>()) == "");
 }
 
 TEST_CASE("nodes of one kind stand together") {
