@@ -11,11 +11,12 @@ Film "rgb" "integer xresolution" 8 "integer yresolution" 8 "float iso" 400 "stri
 Sampler "zsobol" "integer pixelsamples" 64
 WorldBegin
 LightSource "infinite" "rgb L" [2 2 2]
-Material "measured" "string filename" "none.bsdf"
+Texture "t" "spectrum" "ptex" "string filename" "none.ptx"
+Material "diffuse" "texture reflectance" "t"
 Shape "trianglemesh" "point3 P" [-9 -9 2  9 -9 2  9 9 2  -9 9 2] "integer indices" [0 2 1 0 3 2]
 PBRT
 expect 0 import wall.pbrt
-tells err W0801 "measured material"
+tells err W0801 "Ptex files are not read"
 says err "wall.pbrt:7:1"
 says out "wall.scene: 1 remark"
 expect 2 import wall.pbrt # it is there already
@@ -43,7 +44,7 @@ end_header
 4 0 3 2 1
 PLY
 gzip ball.ply
-sed -e '/^Material/d' -e 's/^Shape .*/Shape "plymesh" "string filename" "ball.ply.gz"/' wall.pbrt | gzip >packed.pbrt.gz
+sed -e '/^Material/d' -e '/^Texture/d' -e 's/^Shape .*/Shape "plymesh" "string filename" "ball.ply.gz"/' wall.pbrt | gzip >packed.pbrt.gz
 expect 0 import packed.pbrt.gz -o packed.scene
 is_empty err
 says packed.scene "faces { - 0 3 2 1 }" # a tiny mesh stands in the scene
