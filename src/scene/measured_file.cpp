@@ -16,7 +16,7 @@ namespace {
     throw IoError(fmt::format("cannot read `{}`: {}", file.name(), why));
 }
 
-// Numbers of a field with that many dimensions, all finite and none below 0.
+// Numbers of a field with that many dimensions, all finite and, unless they may be, none below 0.
 std::vector<float> amounts(const TensorFile& file, std::string_view name, std::size_t dimensions, bool mayBeBelow0) {
     const Tensor& t = file[name];
     if (t.type != TensorType::real || t.shape.size() != dimensions || t.size() == 0)

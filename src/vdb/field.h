@@ -1,4 +1,5 @@
-// Grids of an OpenVDB or NanoVDB file, fields made of them that can be rendered, and new grids.
+// Grids of an OpenVDB or NanoVDB file, fields made of them that can be rendered, and new grids. The one header with
+// OpenVDB.
 #pragma once
 
 #include "base/parallel.h"
@@ -92,7 +93,6 @@ class NanoVdbFile {
 // In grid_file.cpp: grids of an OpenVDB file, read by a stream that throws where the file ends. The library's own
 // openvdb::io::File reads on: numbers that were not there keep what memory held, so a damaged file asked for another
 // amount of memory and time, and could give other contents, each time that it was read.
-
 // An open file, of which the heads are read and, unless it was written to a stream that cannot seek, no grid. All
 // functions throw openvdb::Exception or std::ios_base::failure where it is damaged, Failure where its format is newer.
 class GridFile : private openvdb::io::Archive {
