@@ -2,7 +2,7 @@
 // as exceptions, shapes as its geometries, the trees over them, and rays. EmbreeSceneBuilder fills it.
 #pragma once
 
-#include "geometry/few_triangles.h"
+#include "geometry/few_shapes.h"
 #include "geometry/instance_table.h"
 #include "render/intersector.h"
 #include "render/shape.h"
@@ -137,7 +137,7 @@ struct EmbreeStructure {
     std::shared_ptr<const ShapeTree> top;
     std::vector<std::shared_ptr<const ShapeTree>> objects;
     std::vector<std::unique_ptr<const InstanceTable>> tables;
-    std::unique_ptr<const FewTriangles> few; // all there is to be hit, if it is little; else null
+    std::unique_ptr<const FewShapes> few; // all there is to be hit, if it is little; else null
     Bounds3 bounds;
     bool moving = false; // anything
     // What holds a table, the object that it places, and the rays that see it, as bits.
@@ -172,7 +172,7 @@ class EmbreeScene final : public Intersector {
     using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
 
     RTCScene scene;          // the structure's
-    const FewTriangles* few; // likewise
+    const FewShapes* few; // likewise
     bool moving;
 
     bool nearest(const Ray&, RayContext&, RTCRayHit&) const;

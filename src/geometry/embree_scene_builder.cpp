@@ -55,9 +55,9 @@ struct EmbreeSceneBuilder::Impl {
 
 namespace {
 
-std::unique_ptr<const FewTriangles>
-fewTriangles(const std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shapes) {
-    FewTrianglesSink sink;
+std::unique_ptr<const FewShapes>
+fewShapes(const std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shapes) {
+    FewShapesSink sink;
     for (const auto& [shape, binding] : shapes)
         if (!sink.add(*shape, binding.visible)) return nullptr;
     return sink.make();
@@ -217,7 +217,7 @@ void EmbreeSceneBuilder::Impl::fill(EmbreeStructure& s, KeptGeometry& kept, cons
     }
     addTables(s, kScene, scene->scene.get(), top);
     s.bounds = top.bounds;
-    if (s.tables.empty()) s.few = fewTriangles(shapes);
+    if (s.tables.empty()) s.few = fewShapes(shapes);
     const auto moves = [](const auto& tree) {
         return std::ranges::any_of(tree->slots, [](const GeometrySlot& slot) { return slot.steps > 1; });
     };

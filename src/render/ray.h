@@ -4,6 +4,7 @@
 #include "base/flags.h"
 #include "math/vec.h"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace abbe {
@@ -14,6 +15,8 @@ enum class RayKind : std::uint32_t {
     shadow = 2,    // between a place and a light that it samples
     scattered = 4, // all that have been scattered, and paths of light
 };
+
+inline constexpr std::size_t kRayKinds = 3;
 
 using Visibility = Flags<RayKind>;
 
