@@ -171,7 +171,7 @@ class EmbreeScene final : public Intersector {
   private:
     using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
 
-    RTCScene scene;          // the structure's
+    RTCScene scene;       // the structure's
     const FewShapes* few; // likewise
     bool moving;
 

@@ -1,4 +1,4 @@
-#include "geometry/few_polygons.h"
+#include "geometry/few_shapes.h"
 
 #include <algorithm>
 #include <bit>

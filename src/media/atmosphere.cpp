@@ -43,8 +43,9 @@ class AtmosphereWalk final : public MediumWalk {
     // Of the density between two heights that are both above the ground or both below it.
     static double average(double a, double b) {
         if (a <= 0 && b <= 0) return 1;
-        const double d = b - a;
-        return std::abs(d) < 1e-9 ? value(a) : std::exp(-a) * -std::expm1(-d) / d;
+        // From the lower one: from far above, e^-a and its growth on the way down are 0 and infinite.
+        const double d = std::abs(b - a);
+        return d < 1e-9 ? value(a) : value(std::min(a, b)) * -std::expm1(-d) / d;
     }
     // Distance at which the piece that begins at height `here` ends.
     double boundaryAfter(double here) const {

@@ -41,4 +41,23 @@ TEST_CASE("atmosphere: density is within the bounds of its segment, at the segme
     }
 }
 
+// From a hundred thousand scale heights, e^-h is 0 and grows by a factor that is infinite.
+TEST_CASE("atmosphere: mean densities are numbers however far above a thin layer a ray begins") {
+    const SampledCurve curve([](double) { return 2e-5; });
+    MediumOptics optics;
+    optics.extinction = &curve;
+    optics.phase = std::make_shared<HenyeyGreenstein>(0.f);
+    const Atmosphere layer(optics, {0, 1, 0}, 0, 1e-5);
+    WalkSpace space;
+    int segments = 0, wrong = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const float slope = -0.05f - 0.9f * static_cast<float>(i) / 2000;
+        MediumWalk* walk = layer.walk({{0, 1, 4}, {0, slope, -std::sqrt(1 - slope * slope)}}, 1e3f, space);
+        MediumSegment s;
+        for (; walk->next(s); ++segments) wrong += !(s.mean >= s.minimum && s.mean <= s.maximum);
+    }
+    CHECK(segments > 2000);
+    CHECK(wrong == 0);
+}
+
 } // namespace abbe::test
