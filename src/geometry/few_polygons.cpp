@@ -5,12 +5,13 @@
 #include <cmath>
 #include <immintrin.h>
 #include <limits>
+#include <type_traits>
 
 namespace abbe {
 
 namespace {
 
-constexpr std::size_t kWidth = 8;
+constexpr std::size_t kWidth = VisibleLanes::kWidth;
 
 } // namespace
 
@@ -25,13 +26,12 @@ struct alignas(32) FewPolygons::Weights {
     }
 };
 
-// Of eight triangles: planes n · p = d of unit normals, weights, by how much these may be below 0; which rays see them,
-// all bits or none.
+// Of eight triangles: planes n · p = d of unit normals, weights, and by how much these may be below 0.
 struct alignas(32) FewPolygons::Lanes {
     std::array<double, kWidth> nx, ny, nz, d;
     Weights from; // the first corner
     std::array<float, kWidth> slack;
-    std::array<std::array<std::uint32_t, kWidth>, kRayKinds> visible;
+    VisibleLanes visible;
 };
 
 // Of eight quads: weights from either end of the diagonal that does not divide them.
@@ -43,14 +43,14 @@ struct FewPolygons::QuadLanes : Lanes {
 struct FewPolygons::Rays {
     __m256 ox, oy, oz, dx, dy, dz, tMax;
     __m256d wideOx, wideOy, wideOz, wideDx, wideDy, wideDz;
-    std::size_t kind;
+    std::size_t row; // VisibleLanes::row() of its kind
 
     explicit Rays(const Ray& r)
         : ox(_mm256_set1_ps(r.origin.x)), oy(_mm256_set1_ps(r.origin.y)), oz(_mm256_set1_ps(r.origin.z)),
           dx(_mm256_set1_ps(r.direction.x)), dy(_mm256_set1_ps(r.direction.y)), dz(_mm256_set1_ps(r.direction.z)),
           tMax(_mm256_set1_ps(r.tMax)), wideOx(wide(r.origin.x)), wideOy(wide(r.origin.y)), wideOz(wide(r.origin.z)),
           wideDx(wide(r.direction.x)), wideDy(wide(r.direction.y)), wideDz(wide(r.direction.z)),
-          kind(static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(r.kind)))) {}
+          row(VisibleLanes::row(r.kind)) {}
 
     static __m256d wide(float x) { return _mm256_set1_pd(static_cast<double>(x)); }
 };
@@ -109,7 +109,7 @@ template <typename OneLanes>
     }
     const __m256 ahead =
         _mm256_and_ps(_mm256_cmp_ps(t, _mm256_setzero_ps(), _CMP_GT_OQ), _mm256_cmp_ps(t, r.tMax, _CMP_LE_OQ));
-    const __m256 visible = _mm256_load_ps(reinterpret_cast<const float*>(l.visible[r.kind].data()));
+    const __m256 visible = _mm256_load_ps(l.visible.masks(r.row));
     return {_mm256_and_ps(_mm256_and_ps(inside, ahead), visible), t, u, v};
 }
 
@@ -199,15 +199,6 @@ class FewPolygons::Maker {
     // `reach`: of the scene from the origin.
     Maker(FewPolygons& result, double reach) : result_(result), reach_(reach) {}
 
-    // Whether the four corners are one plane: so flat that what it leaves out is no error of a place, and convex, which
-    // the third one is beyond the diagonal of the others.
-    bool isFlat(const Polygon& p, const TrianglePlane& first, const TrianglePlane& second) const {
-        constexpr double kFlat = 0x1p-30;
-        const Vec3d c = Vec3d(p.corners[2]) - first.a;
-        const double u = dot(first.u, c), v = dot(first.v, c);
-        return isUsable(first, reach_) && isUsable(second, reach_) &&
-               std::abs(dot(first.normal, c)) <= kFlat * reach_ && u > 0 && v > 0 && u + v > 1;
-    }
     // False where rounding would show.
     bool add(const Polygon& p) {
         const auto& [a, b, c, d] = p.corners;
@@ -221,6 +212,22 @@ class FewPolygons::Maker {
         quadOwners_.push_back({p.record, p.primitive, false});
         return true;
     }
+    void finish() {
+        result_.owners_ = std::move(quadOwners_);
+        result_.owners_.resize(kWidth * result_.quads_.size());
+        result_.owners_.insert(result_.owners_.end(), triangleOwners_.begin(), triangleOwners_.end());
+    }
+
+  private:
+    // Whether a quad is one plane, so flat that what this leaves out is no error of a place, and convex: its third
+    // corner lies beyond the diagonal of the others.
+    bool isFlat(const Polygon& p, const TrianglePlane& first, const TrianglePlane& second) const {
+        constexpr double kFlat = 0x1p-30;
+        const Vec3d c = Vec3d(p.corners[2]) - first.a;
+        const double u = dot(first.u, c), v = dot(first.v, c);
+        return isUsable(first, reach_) && isUsable(second, reach_) &&
+               std::abs(dot(first.normal, c)) <= kFlat * reach_ && u > 0 && v > 0 && u + v > 1;
+    }
     bool add(const Polygon& p, const TrianglePlane& plane, bool secondHalf) {
         if (!(plane.twice2 > 0)) return true; // nothing to be hit
         if (!isUsable(plane, reach_)) return false;
@@ -229,13 +236,6 @@ class FewPolygons::Maker {
         triangleOwners_.push_back({p.record, p.primitive, secondHalf});
         return true;
     }
-    void finish() {
-        result_.owners_ = std::move(quadOwners_);
-        result_.owners_.resize(kWidth * result_.quads_.size());
-        result_.owners_.insert(result_.owners_.end(), triangleOwners_.begin(), triangleOwners_.end());
-    }
-
-  private:
     template <typename OneLanes> static OneLanes& at(std::vector<OneLanes>& lanes, std::size_t number) {
         if (number % kWidth == 0) lanes.push_back(OneLanes{}); // nobody sees what is not filled
         return lanes.back();
@@ -245,8 +245,7 @@ class FewPolygons::Maker {
         l.d[k] = dot(plane.normal, plane.a);
         l.from.set(k, plane.u, plane.v, plane.a);
         l.slack[k] = static_cast<float>(-slack);
-        for (std::size_t kind = 0; kind < kRayKinds; ++kind)
-            l.visible[kind][k] = p.visible.bits() >> kind & 1 ? 0xffffffffu : 0;
+        l.visible.set(k, p.visible);
     }
 
     FewPolygons& result_;

@@ -22,8 +22,7 @@ std::unique_ptr<const FewShapes> FewShapes::make(std::span<const FewPolygons::Po
             result->boxes_.lower[a][i] = b.lower[axis] - margin[axis];
             result->boxes_.upper[a][i] = b.upper[axis] + margin[axis];
         }
-        for (std::size_t kind = 0; kind < kRayKinds; ++kind)
-            result->boxes_.visible[kind][i] = own[i].visible.bits() >> kind & 1 ? 0xffffffffu : 0;
+        result->boxes_.visible.set(i, own[i].visible);
     }
     return result;
 }
@@ -42,8 +41,7 @@ unsigned FewShapes::meets(const Ray& ray) const noexcept {
         near = _mm256_max_ps(_mm256_min_ps(low, high), near);
         far = _mm256_min_ps(_mm256_mul_ps(_mm256_max_ps(low, high), _mm256_set1_ps(kPutOff)), far);
     }
-    const auto kind = static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(ray.kind)));
-    const __m256 visible = _mm256_load_ps(reinterpret_cast<const float*>(boxes_.visible[kind].data()));
+    const __m256 visible = _mm256_load_ps(boxes_.visible.masks(VisibleLanes::row(ray.kind)));
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_and_ps(_mm256_cmp_ps(near, far, _CMP_LE_OQ), visible)));
 }
 
@@ -78,11 +76,11 @@ bool FewShapesSink::add(const Shape& shape, Visibility visible) {
     return fits_;
 }
 
-void FewShapesSink::triangles(TimeSteps<Vec3> vertices, Triangles indices) { add(vertices, indices); }
-void FewShapesSink::quads(TimeSteps<Vec3> vertices, Quads indices) { add(vertices, indices); }
+void FewShapesSink::triangles(TimeSteps<Vec3> vertices, Triangles indices) { addPolygons(vertices, indices); }
+void FewShapesSink::quads(TimeSteps<Vec3> vertices, Quads indices) { addPolygons(vertices, indices); }
 
 template <std::size_t corners>
-void FewShapesSink::add(TimeSteps<Vec3> vertices, std::span<const std::array<std::uint32_t, corners>> indices) {
+void FewShapesSink::addPolygons(TimeSteps<Vec3> vertices, std::span<const std::array<std::uint32_t, corners>> indices) {
     const std::size_t left = FewPolygons::kMost - std::min(polygons_.size(), FewPolygons::kMost);
     fits_ = fits_ && vertices.size() == 1 && indices.size() <= left;
     if (!fits_) return;

@@ -5,6 +5,8 @@
 #include "render/shape.h"
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,13 +15,29 @@
 
 namespace abbe {
 
-// Triangles and quads, all at once.
-//
-// Eight to a step, without a branch. The distance to a plane is computed in double, so that a ray never meets the
-// polygon that it starts on, from which it is moved by the bound of the point's error; the place in the plane in float.
-// Rays that pass an edge within the rounding of that place count as hits, so that neighbours leave no crack. Quads that
-// are flat and convex are one plane with four edges; others are two triangles, split as Embree splits them. Immutable;
-// the same bits on every machine.
+// Which of eight lanes rays of a kind see.
+class VisibleLanes {
+  public:
+    static constexpr std::size_t kWidth = 8;
+
+    void set(std::size_t lane, Visibility visible) {
+        for (std::size_t r = 0; r < kRayKinds; ++r) rows_[r][lane] = visible.bits() >> r & 1 ? 0xffffffffu : 0;
+    }
+    static std::size_t row(RayKind kind) {
+        return static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(kind)));
+    }
+    // All bits or none for each lane, at an address for eight floats.
+    const float* masks(std::size_t row) const { return reinterpret_cast<const float*>(rows_[row].data()); }
+
+  private:
+    alignas(32) std::array<std::array<std::uint32_t, kWidth>, kRayKinds> rows_{}; // what is not set nobody sees
+};
+
+// Triangles and quads, eight to a step, without a branch. The distance to a plane is computed in double, so that a ray
+// never meets the polygon that it starts on, from which it is moved by the bound of the point's error; the place in the
+// plane in float. Rays that pass an edge within the rounding of that place count as hits, so that neighbours leave no
+// crack. Quads that are flat and convex are one plane with four edges; others are two triangles, split as Embree splits
+// them. Immutable; the same bits on every machine.
 class FewPolygons {
   public:
     static constexpr std::size_t kMost = 96;
@@ -68,7 +86,7 @@ class FewPolygons {
 // the shapes. The same bits on every machine.
 class FewShapes {
   public:
-    static constexpr std::size_t kMostOwn = 8;
+    static constexpr std::size_t kMostOwn = VisibleLanes::kWidth;
 
     // A shape with one primitive that intersects itself (GeometrySink::analytic).
     struct Own {
@@ -86,10 +104,10 @@ class FewShapes {
     bool occluded(const Ray&) const noexcept;
 
   private:
-    // Of the own shapes; a lane that is not filled is seen by no ray.
+    // Of the own shapes.
     struct alignas(32) Boxes {
         std::array<std::array<float, kMostOwn>, 3> lower{}, upper{};
-        std::array<std::array<std::uint32_t, kMostOwn>, kRayKinds> visible{};
+        VisibleLanes visible;
     };
     unsigned meets(const Ray&) const noexcept;
 
@@ -118,7 +136,7 @@ class FewShapesSink final : public GeometrySink {
 
   private:
     template <std::size_t corners>
-    void add(TimeSteps<Vec3> vertices, std::span<const std::array<std::uint32_t, corners>> indices);
+    void addPolygons(TimeSteps<Vec3> vertices, std::span<const std::array<std::uint32_t, corners>> indices);
 
     std::vector<FewPolygons::Polygon> polygons_;
     std::vector<FewShapes::Own> own_;
