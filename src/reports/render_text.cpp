@@ -416,6 +416,7 @@ Json lightPathJson(const CausticFindings& all) {
                                       {"rest", g.rest},
                                       {"samples_per_round", static_cast<std::uint64_t>(g.every)},
                                       {"photons", static_cast<std::uint64_t>(g.photons)},
+                                      {"more_camera_paths", static_cast<std::uint64_t>(g.more)},
                                       {"pilot_rays", g.rays},
                                       {"lights", std::move(lights)},
                                       {"never_found", std::move(unseen)}}));

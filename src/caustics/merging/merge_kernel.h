@@ -11,6 +11,37 @@
 
 namespace abbe {
 
+// How bright the pixels around each are by their first camera paths of a round.
+class BrightnessAround {
+  public:
+    static constexpr int kReach = 3; // pixels: bright rims are thin, and one path in a few meets what they mirror
+
+    void start(PixelBounds bounds) {
+        bounds_ = bounds;
+        most_.assign(static_cast<std::size_t>(bounds.area()), 0);
+    }
+    void add(int x, int y, float luminance) {
+        float& itself = most(x, y);
+        const float before = itself;
+        const int x0 = std::max(x - kReach, bounds_.x0), x1 = std::min(x + kReach + 1, bounds_.x1);
+        for (int v = std::max(y - kReach, bounds_.y0); v < std::min(y + kReach + 1, bounds_.y1); ++v) {
+            float* const row = &most(x0, v);
+            for (int i = 0; i < x1 - x0; ++i) row[i] = std::max(row[i], luminance);
+        }
+        itself = before;
+    }
+    // The brightest of the others within kReach.
+    float of(int x, int y) { return most(x, y); }
+
+  private:
+    float& most(int x, int y) {
+        return most_[static_cast<std::size_t>(bounds_.width()) * static_cast<std::size_t>(y - bounds_.y0) +
+                     static_cast<std::size_t>(x - bounds_.x0)];
+    }
+    PixelBounds bounds_;
+    std::vector<float> most_;
+};
+
 // A round is a picture of its own: light paths and camera paths are those of its number alone, whoever makes it.
 template <EffectBits E> class MergeKernel {
   public:
@@ -32,7 +63,8 @@ template <EffectBits E> class MergeKernel {
     }
 
   private:
-    static constexpr std::uint64_t kRound = 0x726f756e64, kPhoton = 0x70686f746f6e, kGather = 0x676174686572;
+    static constexpr std::uint64_t kRound = 0x726f756e64, kPhoton = 0x70686f746f6e, kGather = 0x676174686572,
+                                   kGatherMore = 0x676174686d6f7265;
 
     std::uint64_t key(std::uint64_t purpose, int replicate) const {
         return combine64(combine64(context_.settings.seed, purpose), static_cast<std::uint64_t>(replicate));
@@ -63,11 +95,20 @@ template <EffectBits E> class MergeKernel {
 
     static std::uint64_t raysOf(const PathCounters& c) { return c.vertices + c.shadowRays; }
 
-    // In all pixels, unless it is told to stop.
+    // Unless it is told to stop.
     bool gatherAll(int replicate, std::uint32_t number, const PhotonMaps& photons) {
-        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
         gathered_.clear();
-        // Of a part of the pixels others in each round, spread evenly [Roberts2018]; the first is in the middle.
+        if (job_.step > 1)
+            gatherSome(replicate, number, photons);
+        else
+            gatherFirst(replicate, number, photons);
+        if (plan_.more > 0 && job_.step == 1) gatherMore(replicate, number, photons);
+        return !left();
+    }
+
+    // In a part of the pixels, others in each round, spread evenly [Roberts2018]; the first is in the middle.
+    void gatherSome(int replicate, std::uint32_t number, const PhotonMaps& photons) {
+        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
         const auto phase = [&](double golden) {
             const double place = 0.5 + number * golden;
             return static_cast<int>((place - std::floor(place)) * job_.step);
@@ -76,9 +117,41 @@ template <EffectBits E> class MergeKernel {
         for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
             for (int x = pixels.x0; x < pixels.x1; ++x)
                 if ((x - frame.x0) % job_.step == px && (y - frame.y0) % job_.step == py)
-                    gather(x, y, replicate, number, photons);
-        return !left();
+                    gather({x, y, replicate, number}, key(kGather, replicate), 1, photons);
     }
+
+    // By one path for every pixel of the film, and for those of the frame near it, which tell of theirs.
+    void gatherFirst(int replicate, std::uint32_t number, const PhotonMaps& photons) {
+        const PixelBounds frame = context_.scene.frame, film = film_.bounds();
+        const int near = plan_.more > 0 ? BrightnessAround::kReach : 0;
+        const PixelBounds seen{std::max(frame.x0, film.x0 - near), std::max(frame.y0, film.y0 - near),
+                               std::min(frame.x1, film.x1 + near), std::min(frame.y1, film.y1 + near)};
+        if (plan_.more > 0) around_.start(seen);
+        for (int y = seen.y0; y < seen.y1 && !left(); ++y)
+            for (int x = seen.x0; x < seen.x1; ++x) {
+                const double luminance = gather({x, y, replicate, number}, key(kGather, replicate), 1, photons);
+                if (plan_.more > 0 && luminance != 0) around_.add(x, y, static_cast<float>(std::abs(luminance)));
+            }
+        std::erase_if(gathered_, [&](const Gathered& g) {
+            return g.x < film.x0 || g.y < film.y0 || g.x >= film.x1 || g.y >= film.y1;
+        });
+    }
+
+    // A camera path that a rim may mirror meets a caustic or does not, and its pixel is as noisy as chance makes that,
+    // however many photons there are. So where light is there are more. Neighbours tell where: by its own path a pixel
+    // that has not met the light would count as dark, and too bright where it has.
+    void gatherMore(int replicate, std::uint32_t number, const PhotonMaps& photons) {
+        const PixelBounds film = film_.bounds();
+        for (Gathered& g : gathered_) g.factor /= 1 + static_cast<double>(more(g.x, g.y));
+        for (int y = film.y0; y < film.y1 && !left(); ++y)
+            for (int x = film.x0; x < film.x1; ++x) {
+                const std::uint32_t n = more(x, y);
+                const double share = 1 / (1 + static_cast<double>(n));
+                for (std::uint32_t j = 0; j < n; ++j)
+                    gather({x, y, replicate, number * plan_.more + j}, key(kGatherMore, replicate), share, photons);
+            }
+    }
+    std::uint32_t more(int x, int y) { return plan_.moreBeside(around_.of(x, y)); }
 
     bool left() const { return media_.left() || result_.counters.left || context_.toldToStop(); }
 
@@ -112,10 +185,12 @@ template <EffectBits E> class MergeKernel {
         removeWorkFlag(WorkFlag::heroOnly);
     }
 
-    void gather(int x, int y, int replicate, std::uint32_t number, const PhotonMaps& photons) {
+    // By the camera path of this number of a pixel's, which counts for a share of them; luminance that it found.
+    double gather(const SampleId& id, std::uint64_t key, double share, const PhotonMaps& photons) {
+        const auto [x, y, replicate, number] = id;
         const auto place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
-        sampler_.startPixel(combine64(key(kGather, replicate), place), Technique::Numbers::sobol, true);
+        sampler_.startPixel(combine64(key, place), Technique::Numbers::sobol, true);
         sampler_.start(number);
         const FilterSample filter = film_.filter(sampler_.film());
         const CameraSample at{
@@ -125,9 +200,10 @@ template <EffectBits E> class MergeKernel {
             lambda_.nm[0]};
         const CameraRay camera = context_.scene.camera->ray(at);
         if (listener_) listener_->begins(x, y);
-        if (!(camera.weight > 0)) return;
+        if (!(camera.weight > 0)) return 0;
+        const std::uint64_t before = raysOf(result_.counters);
         GatherPath<E> path(context_, sampler_, arena_, result_.counters, media_);
-        startFromCamera(path.walk(), at, camera, around_);
+        startFromCamera(path.walk(), at, camera, surroundings_);
         const auto factor = static_cast<double>(camera.weight * filter.weight);
         sums_.clear();
         path.gather(camera.ray, lambda_, camera.heroOnly, photons, radius_, [&](const GatheredLight& light) {
@@ -137,7 +213,13 @@ template <EffectBits E> class MergeKernel {
             sum.closer += light.value * light.closer;
         });
         removeWorkFlag(WorkFlag::heroOnly);
-        for (const Sum& sum : sums_) gathered_.push_back({x, y, factor, sum});
+        if (listener_) listener_->ends(raysOf(result_.counters) - before);
+        double luminance = 0;
+        for (const Sum& sum : sums_) {
+            gathered_.push_back({x, y, factor * share, sum});
+            luminance += context_.scene.sensor(sum.radiance, lambda_).y * factor;
+        }
+        return luminance;
     }
 
     // Of one light, for light groups.
@@ -186,10 +268,11 @@ template <EffectBits E> class MergeKernel {
     Sampler sampler_;
     Arena arena_;
     VertexArenas vertexArenas_;
-    CameraSurroundings around_;
+    CameraSurroundings surroundings_;
     typename PathWalk<E>::Media media_;
     std::vector<Sum> sums_;          // of this pixel
     std::vector<Gathered> gathered_; // of the round
+    BrightnessAround around_;        // likewise
     Wavelengths lambda_;             // of the round
     float time_ = 0;                 // likewise, as CameraSample::time
     float radius_ = 0;               // likewise, over that of cones

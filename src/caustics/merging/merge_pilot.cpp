@@ -30,7 +30,6 @@ class MergePilot::Listener final : public MergeListener {
 
     void starts(const EmittedRay& start) override { to_.starts.push_back(place(start.light, start.target, start.aim)); }
     void begins(int x, int y) override {
-        end();
         x_ = x;
         y_ = y;
         ++to_.looks;
@@ -45,9 +44,10 @@ class MergePilot::Listener final : public MergeListener {
         if (!(camera > 0)) pixel.unseen += luminance;
         squares_[{start.light, start.target, start.part}] += square(luminance);
     }
-    void end() {
+    void ends(std::uint64_t rays) override {
         for (auto& [light, pixel] : pixels_) {
             pixel.light = light;
+            pixel.rays = rays;
             pixel.x = x_;
             pixel.y = y_;
             to_.pixels.push_back(pixel);
@@ -103,7 +103,6 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
         addWorkFlag(WorkFlag::pilot);
         const TileResult r = kernel_.merge(context, film, {round, round + 1, 0, 1, 0, step_, wider_}, &listener);
         removeWorkFlag(WorkFlag::pilot);
-        listener.end();
         parts[i].rays = r.counters.vertices + r.counters.shadowRays;
         photonRays[i] = r.photonRays;
         photons[i] = r.photons;

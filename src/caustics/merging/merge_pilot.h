@@ -20,6 +20,7 @@ class MergePilot {
         double sum = 0, squares = 0; // of what its photons bring, and of the squares
         double camera = 0;           // Σ of what a photon brings times the sample of a camera path that finds the same
         double unseen = 0;           // of the sum, by photons that no camera path finds
+        std::uint64_t rays = 0;      // of the camera path
     };
     struct Heard {
         std::vector<Pixel> pixels;

@@ -24,6 +24,16 @@ struct MergePlan {
     std::uint32_t photons = 0;               // > 0
     std::uint32_t every = 1;                 // samples of a replicate there are to a round
     float leastRadius = 0;                   // m, > 0: of a disk, where a path has no width at all
+    // Camera paths of a round beside the first of a pixel, at most: where the first of a pixel near it finds the
+    // luminance `bright` or more; fewer where it is less, none below a tenth of that.
+    std::uint32_t more = 0;
+    float bright = 0;
+
+    std::uint32_t moreBeside(float luminance) const {
+        if (!(luminance > 0.1f * bright)) return 0;
+        return luminance < bright ? static_cast<std::uint32_t>(std::ceil(static_cast<float>(more) * luminance / bright))
+                                  : more;
+    }
 
     // Radius of the disk over which the first round gathers, over that of a pixel's cone (RayCone), which is
     // a quarter of the distance between pixels.
@@ -45,6 +55,7 @@ struct MergeFindings {
     double before = 0, after = 0, rest = 0, gain = 1;
     std::uint32_t every = 1;         // samples of a replicate there are to a round
     std::uint32_t photons = 0;       // light paths of a round
+    std::uint32_t more = 0;          // camera paths of a round beside the first, where such light is seen
     std::uint64_t rays = 0;          // that it took to find out
     std::vector<std::string> lights; // whose light is merged
     std::vector<std::string> unseen; // whose light camera paths never find, whether it is merged or not

@@ -29,6 +29,13 @@ constexpr double kLeastMergeGain = 1.5;
 // What a ray of a round costs, over one of a camera path: photons are kept, sorted and looked for.
 constexpr double kRoundCost = 2;
 constexpr std::array kEvery{1u, 2u, 4u};
+// Light paths of a round, of as many as the frame has pixels.
+constexpr std::array kPhotonShares{1.0, 0.5, 0.25};
+// Of all that a picture takes, what is spent on more camera paths in a round where merged light is seen: a pilot knows
+// the mean of all pixels, and next to nothing of the few whose camera paths meet the light or do not by chance.
+constexpr double kMoreShare = 0.1;
+constexpr std::uint32_t kMostMore = 64;
+constexpr double kNearBright = 4; // pixels near such light, for each that sees it
 // Relative second moment of a round over the number of looks of a pilot, at least: images of caustics may be small, and
 // wide disks of a small pilot blur them.
 constexpr double kUnseenMerged = 1;
@@ -55,7 +62,7 @@ class MergePlanner {
         EmissionPlan even;
         even.targets = aimTargets(context_.scene.focusing, bounds, boxesOfBalls(context_.scene.surfaces)).balls;
         MergePlan plan{
-            AimedEmission(context_.scene.lights, bounds, even), {}, pilot_.photons(), 1, 1e-5f * bounds.radius()};
+            AimedEmission(context_.scene.lights, bounds, even), {}, pilot_.photons(), 1, 1e-5f * bounds.radius(), 0, 0};
         for (const auto& light : context_.scene.lights)
             if (light->paths() != LightPaths::none) plan.lights.insert(light.get());
         if (plan.emission.empty()) return result;
@@ -143,22 +150,65 @@ class MergePlanner {
         }
         findings_.photons = plan.photons;
         if (plan.lights.empty()) return false;
-        own = std::max(own, kUnseenMerged / heard.looks);
         findings_.rest = light_.measured ? light_.rest + (light_.used() ? light_.after : light_.before) : 0;
         const double rays = cameraRays();
-        const double round =
-            kRoundCost * (heard.gatherRays + heard.photonRays * plan.photons / static_cast<double>(frame_.area()));
-        double least = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t every : kEvery) {
-            const double cost = (findings_.rest + own * every) * (rays + round / every);
-            if (!(cost < least)) continue;
-            least = cost;
-            findings_.after = own * every;
-            findings_.every = plan.every = every;
-            raysBeside_ = round / every;
-        }
-        findings_.gain = (findings_.rest + findings_.before) * rays / least;
+        const double cost = chooseRounds(plan, heard, measure, own, rays);
+        chooseMore(plan, heard, measure, rays);
+        findings_.gain = (findings_.rest + findings_.before) * rays / cost;
         return forced || findings_.gain >= kLeastMergeGain;
+    }
+
+    // How many there are, and light paths in each. `own`: relative second moment of one with plan.photons. Variance
+    // times rays of a sample of all pixels.
+    double chooseRounds(MergePlan& plan, const MergePilot::Heard& heard, const NoiseMeasure& measure, double own,
+                        double rays) {
+        const std::uint32_t all = plan.photons;
+        double least = std::numeric_limits<double>::infinity();
+        for (const double share : kPhotonShares) {
+            const auto photons = static_cast<std::uint32_t>(share * all);
+            if (share < 1 && photons < kLeastPaths) break;
+            double seen = 0;
+            for (const auto& [light, m] : moments(heard, measure, photons))
+                if (plan.lights.contains(context_.scene.lights[light].get())) seen += m.merged;
+            // What was not seen is taken to be as grainy as what was.
+            const double grain = own > 0 ? seen / own : 1;
+            const double one = std::max(seen, grain * kUnseenMerged / heard.looks);
+            const double round =
+                kRoundCost * (heard.gatherRays + heard.photonRays * photons / static_cast<double>(frame_.area()));
+            for (const std::uint32_t every : kEvery) {
+                const double cost = (findings_.rest + one * every) * (rays + round / every);
+                if (!(cost < least)) continue;
+                least = cost;
+                findings_.after = one * every;
+                findings_.every = plan.every = every;
+                findings_.photons = plan.photons = photons;
+                raysBeside_ = round / every;
+            }
+        }
+        return least;
+    }
+
+    // Camera paths of a round beside the first of each pixel, where light is: as many as kMoreShare pays for.
+    void chooseMore(MergePlan& plan, const MergePilot::Heard& heard, const NoiseMeasure& measure, double rays) {
+        plan.bright = static_cast<float>(measure.mean());
+        plan.more = kMostMore;
+        double more = 0, ofAny = 0, any = 0; // rays of looks that found light, those of more paths and of their own
+        for (std::size_t i = 0; i < heard.pixels.size();) {
+            const MergePilot::Pixel& first = heard.pixels[i];
+            double sum = 0;
+            for (; i < heard.pixels.size() && heard.pixels[i].x == first.x && heard.pixels[i].y == first.y; ++i)
+                sum += heard.pixels[i].sum;
+            const auto own = static_cast<double>(first.rays);
+            more += own * plan.moreBeside(static_cast<float>(sum)) / kMostMore;
+            ofAny += own;
+            ++any;
+        }
+        const double one = kRoundCost * kNearBright * std::max(more, ofAny / any) / heard.looks;
+        const double paid = kMoreShare * (rays + raysBeside_) * plan.every / one;
+        plan.more = 0;
+        for (std::uint32_t n = 1; n <= kMostMore && n <= paid; n *= 2) plan.more = n;
+        findings_.more = plan.more;
+        raysBeside_ += plan.more * one / plan.every;
     }
 
     const PathContext& context_;

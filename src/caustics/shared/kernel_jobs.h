@@ -127,6 +127,7 @@ class MergeListener {
     virtual void begins(int x, int y) = 0;
     // `luminance` and, 0 if there is none, that of the sample of a camera path which finds the same light by itself.
     virtual void gathers(const Photon&, double luminance, double camera) = 0;
+    virtual void ends(std::uint64_t rays) = 0; // a camera path, with as many rays
 };
 
 // Of the query with this number: what is seen behind each event, at these wavelengths.
