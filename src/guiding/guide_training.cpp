@@ -55,7 +55,7 @@ struct Brought {
 struct Learnt {
     PathGuide::Region region;
     std::vector<PathGuide::Square> squares;
-    std::vector<PathGuide::Sums> sums;
+    std::vector<PathGuide::Choices> choices;
 
     // Density of the direction.
     float guided(const GuideRecord& r) const {
@@ -154,7 +154,7 @@ class RegionLearner {
     std::uint16_t flatten(std::uint32_t quad, float density) {
         const auto number = static_cast<std::uint16_t>(learnt_.squares.size());
         learnt_.squares.emplace_back();
-        learnt_.sums.emplace_back();
+        learnt_.choices.emplace_back();
         PathGuide::Square made;
         for (std::uint32_t i = 0; i < 16; ++i) {
             const std::uint32_t column = i % 4, row = i / 4;
@@ -169,24 +169,32 @@ class RegionLearner {
                 if (quads_[c].child[sub]) part.child = flatten(quads_[c].child[sub], part.density);
             }
         }
-        learnt_.sums[number] = sumsOf(made);
+        learnt_.choices[number] = choicesOf(made);
         learnt_.squares[number] = made;
         return number;
     }
     static std::uint16_t narrowed(float v) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(v) >> 16); }
-    static PathGuide::Sums sumsOf(const PathGuide::Square& square) {
-        const auto mass = [&](std::size_t row, std::size_t column) { return square.parts[4 * row + column].density; };
-        std::array<float, 4> columns{};
-        float all = 0;
-        for (std::size_t c = 0; c < 4; ++c) all += columns[c] = mass(0, c) + mass(1, c) + mass(2, c) + mass(3, c);
-        PathGuide::Sums sums;
+    static PathGuide::Choice choiceOf(const std::array<float, 4>& masses) {
+        const float all = masses[0] + masses[1] + masses[2] + masses[3];
+        PathGuide::Choice choice;
         float before = 0;
-        for (std::size_t c = 0; c < 4; ++c) {
-            if (c < 3) sums.columns[c] = (before += columns[c]) / all;
-            float below = 0;
-            for (std::size_t r = 0; r < 3; ++r) sums.rows[c][r] = (below += mass(r, c)) / columns[c];
+        for (std::size_t i = 0; i < 4; ++i) {
+            choice.first[i] = before / all;
+            choice.scale[i] = all / masses[i];
+            before += masses[i];
         }
-        return sums;
+        return choice;
+    }
+    static PathGuide::Choices choicesOf(const PathGuide::Square& square) {
+        PathGuide::Choices choices;
+        std::array<float, 4> columns{};
+        for (std::size_t c = 0; c < 4; ++c) {
+            std::array<float, 4> rows{};
+            for (std::size_t r = 0; r < 4; ++r) columns[c] += rows[r] = square.parts[4 * r + c].density;
+            choices.rows[c] = choiceOf(rows);
+        }
+        choices.columns = choiceOf(columns);
+        return choices;
     }
 
     float perFrame_;
@@ -321,14 +329,14 @@ class GuideTrainer {
     static PathGuide together(SpaceTree space, std::span<JudgedRegion> learnt) {
         std::vector<PathGuide::Region> regions;
         std::vector<PathGuide::Square> squares;
-        std::vector<PathGuide::Sums> sums;
+        std::vector<PathGuide::Choices> choices;
         for (JudgedRegion& j : learnt) {
             j.learnt.region.first = static_cast<std::uint32_t>(squares.size());
             squares.insert(squares.end(), j.learnt.squares.begin(), j.learnt.squares.end());
-            sums.insert(sums.end(), j.learnt.sums.begin(), j.learnt.sums.end());
+            choices.insert(choices.end(), j.learnt.choices.begin(), j.learnt.choices.end());
             regions.push_back(j.learnt.region);
         }
-        return {std::move(space), std::move(regions), std::move(squares), std::move(sums)};
+        return {std::move(space), std::move(regions), std::move(squares), std::move(choices)};
     }
 
     std::span<const PilotVertex> vertices_;

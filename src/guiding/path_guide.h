@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 namespace abbe {
 
@@ -23,8 +24,8 @@ struct SphereSquare {
         const Vec2 u{0.5f + (v.x + v.y) * scale, 0.5f + (v.y - v.x) * scale};
         return {v.z >= 0, {std::clamp(u.x, 0.f, kOneMinusEpsilon), std::clamp(u.y, 0.f, kOneMinusEpsilon)}};
     }
-    // A unit vector.
-    Vec3 direction() const;
+    // On the octahedron: |x| + |y| + |z| = 1.
+    Vec3 onOctahedron() const;
 };
 
 // Regions of space, the leaves of a binary tree, each with a density over directions: two trees of squares, one for
@@ -40,10 +41,23 @@ class PathGuide {
         };
         std::array<Part, 16> parts{};
     };
-    // By what samples choose among the parts of a square.
-    struct Sums {
-        std::array<float, 3> columns{};             // shares of the first one, two and three columns
-        std::array<std::array<float, 3>, 4> rows{}; // of rows in each column
+    // One of four, drawn by u in [0, 1), which is spread over [0, 1) again.
+    struct Choice {
+        std::array<float, 4> first{}; // of what falls to each, from 0 on
+        std::array<float, 4> scale{}; // 1 over its share
+
+        std::uint32_t choose(float& u) const {
+            const std::uint32_t i = static_cast<std::uint32_t>(u >= first[1]) +
+                                    static_cast<std::uint32_t>(u >= first[2]) +
+                                    static_cast<std::uint32_t>(u >= first[3]);
+            u = std::clamp((u - first[i]) * scale[i], 0.f, kOneMinusEpsilon);
+            return i;
+        }
+    };
+    // By what samples choose among the parts of a square: its column, and a row of that.
+    struct Choices {
+        Choice columns;
+        std::array<Choice, 4> rows;
     };
     // Directions are those from the centre of the region to where they reach a sphere about the place they start from:
     // so they follow what is at that distance, be it what gives off light or a gap through which it comes.
@@ -58,14 +72,26 @@ class PathGuide {
         bool known = false;          // whether there is anything to look up
 
         // The way from the centre to p in radii of the sphere; shorter than one: p may lie beyond.
-        Vec3 offset(Vec3 p) const;
+        Vec3 offset(Vec3 p) const {
+            constexpr float kFarthest = 0.8f;
+            const Vec3 o = (p - centre) * nearness;
+            const float r2 = dot(o, o);
+            return r2 <= kFarthest * kFarthest ? o : o * (kFarthest / std::sqrt(r2));
+        }
     };
     // How a direction from a place is seen from the centre of its region.
     struct Seen {
         SphereSquare at;
         float area = 0; // of the square, over the solid angle around the direction, 1/sr
     };
-    static Seen seen(Vec3 offset, Vec3 w);
+    static Seen seen(Vec3 offset, Vec3 w) {
+        // Where w reaches the sphere about the place is v = w + offset seen from the centre, and the solid angles there
+        // are (w · v) / |v|³ times those from the place. The square has 1/2 (|v| / s)³ for each of them, of which |v|
+        // cancels.
+        const Vec3 v = w + offset;
+        const float inverse = 1 / (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+        return {SphereSquare::of(v, inverse), 0.5f * dot(w, v) * inverse * inverse * inverse};
+    }
     struct Direction {
         Vec3 w;
         float pdf = 0;      // 1/sr
@@ -101,10 +127,10 @@ class PathGuide {
     };
 
     // `regions`: those of the leaves of `space`.
-    // `sums`: those of the squares.
-    PathGuide(SpaceTree space, std::vector<Region> regions, std::vector<Square> squares, std::vector<Sums> sums)
-        : space_(std::move(space)), regions_(std::move(regions)), squares_(std::move(squares)), sums_(std::move(sums)) {
-    }
+    // `choices`: those of the squares.
+    PathGuide(SpaceTree space, std::vector<Region> regions, std::vector<Square> squares, std::vector<Choices> choices)
+        : space_(std::move(space)), regions_(std::move(regions)), squares_(std::move(squares)),
+          choices_(std::move(choices)) {}
 
     // `face`: faceOf() the normal of the surface, on the side of the eye.
     View at(Vec3 p, std::uint8_t face) const {
@@ -123,7 +149,7 @@ class PathGuide {
     SpaceTree space_;
     std::vector<Region> regions_;
     std::vector<Square> squares_;
-    std::vector<Sums> sums_;
+    std::vector<Choices> choices_;
 };
 
 } // namespace abbe
