@@ -35,19 +35,39 @@ struct GuideRecord {
 };
 using GuideRecords = std::span<const GuideRecord>;
 
-// On the squares of its hemisphere; all but `u` are sums where several are meant.
+// What one direction brought, or several: sums.
 struct Brought {
-    Vec2 u;
     double first = 0, squared = 0;    // what it brought / pdf, and the square of that
     double second = 0;                // what it brought, squared and integrated over the square
     double radiance = 0, inverse = 0; // radiance / pdf, and 1 / pdf
 
-    void operator+=(const Brought& b) {
-        first += b.first;
-        squared += b.squared;
-        second += b.second;
-        radiance += b.radiance;
-        inverse += b.inverse;
+    Brought operator+(const Brought& b) const {
+        return {first + b.first, squared + b.squared, second + b.second, radiance + b.radiance, inverse + b.inverse};
+    }
+    Brought operator-(const Brought& b) const {
+        return {first - b.first, squared - b.squared, second - b.second, radiance - b.radiance, inverse - b.inverse};
+    }
+};
+
+// Places on the squares of both hemispheres along a Z-order curve, quarter by quarter of every square; the upper
+// hemisphere comes last.
+struct PlaceOrder {
+    static constexpr int kBits = 2 * kMostHalvings;
+    static constexpr std::uint32_t kUpper = 1u << kBits;
+
+    static std::uint32_t of(const SphereSquare& at) {
+        constexpr float kSide = 1 << kMostHalvings;
+        const auto x = static_cast<std::uint32_t>(at.u.x * kSide), y = static_cast<std::uint32_t>(at.u.y * kSide);
+        return (at.upper ? kUpper : 0) | spread(x) | spread(y) << 1;
+    }
+
+  private:
+    // Every other bit.
+    static std::uint32_t spread(std::uint32_t v) {
+        v = (v | v << 8) & 0x00ff00ff;
+        v = (v | v << 4) & 0x0f0f0f0f;
+        v = (v | v << 2) & 0x33333333;
+        return (v | v << 1) & 0x55555555;
     }
 };
 
@@ -69,7 +89,8 @@ class RegionLearner {
 
     // A region from every so many-th of the records, seen from `frame`.
     Learnt learn(GuideRecords records, const PathGuide::Region& frame, std::size_t first, std::size_t step) {
-        std::array<std::vector<Brought>, 2> found;
+        order_.clear();
+        found_.clear();
         Brought all;
         for (std::size_t i = first; i < records.size(); i += step) {
             const GuideRecord& r = records[i];
@@ -77,19 +98,24 @@ class RegionLearner {
             const auto area = static_cast<double>(density);
             const auto brought = static_cast<double>(r.brought()), pdf = static_cast<double>(r.pdf);
             const double value = brought / pdf;
-            found[at.upper].push_back(
-                {at.u, value, value * value, value * brought / area, static_cast<double>(r.radiance) / pdf, 1 / pdf});
-            all += found[at.upper].back();
+            order_.push_back({PlaceOrder::of(at), static_cast<std::uint32_t>(found_.size())});
+            found_.push_back(
+                {value, value * value, value * brought / area, static_cast<double>(r.radiance) / pdf, 1 / pdf});
+            all = all + found_.back();
         }
         learnt_ = {};
         learnt_.region = frame;
         if (!(all.first > 0)) return std::move(learnt_);
         least_ = kSquareShare * all.first;
         mean_ = all.radiance / all.inverse;
+        addUp();
+        const std::size_t upper = firstFrom(0, order_.size(), PlaceOrder::kUpper);
         std::array<double, 2> weights{};
         for (std::size_t side = 0; side < 2; ++side) {
             quads_.clear();
-            weights[side] = divide(found[side], 1, 1).weight;
+            const Square whole =
+                side == 0 ? Square{0, upper, 0, 1} : Square{upper, order_.size(), PlaceOrder::kUpper, 1};
+            weights[side] = divide(whole, 1).weight;
             learnt_.region.upperRoot = flatten(0, 1);
         }
         learnt_.region.known = true;
@@ -108,26 +134,49 @@ class RegionLearner {
         std::uint32_t number;
     };
 
-    using Found = std::span<Brought>;
-    template <typename Below> static std::pair<Found, Found> halves(Found found, Below below) {
-        const auto rest = std::ranges::partition(found, below);
-        return {found.first(found.size() - rest.size()), found.last(rest.size())};
+    // By PlaceOrder, digit by digit from the last on, each stable.
+    void addUp() {
+        constexpr int kDigit = (PlaceOrder::kBits + 2) / 2;
+        sorted_.resize(order_.size());
+        for (int shift = 0; shift <= PlaceOrder::kBits; shift += kDigit) {
+            std::array<std::uint32_t, (1u << kDigit) + 1> from{};
+            const auto digit = [shift](std::uint32_t place) { return place >> shift & ((1u << kDigit) - 1); };
+            for (const auto& entry : order_) ++from[digit(entry.first) + 1];
+            for (std::size_t d = 1; d < from.size(); ++d) from[d] += from[d - 1];
+            for (const auto& entry : order_) sorted_[from[digit(entry.first)]++] = entry;
+            std::swap(order_, sorted_);
+        }
+        upTo_.resize(order_.size() + 1);
+        for (std::size_t i = 0; i < order_.size(); ++i) upTo_[i + 1] = upTo_[i] + found_[order_[i].second];
+    }
+    // The first of [begin, end) in that order whose place is not below.
+    std::size_t firstFrom(std::size_t begin, std::size_t end, std::uint32_t place) const {
+        const auto at = std::ranges::lower_bound(order_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 order_.begin() + static_cast<std::ptrdiff_t>(end), place, {},
+                                                 &std::pair<std::uint32_t, std::uint32_t>::first);
+        return static_cast<std::size_t>(at - order_.begin());
     }
 
-    Divided divide(Found found, double area, int halvings) {
+    // What lies in one, [begin, end) in that order.
+    struct Square {
+        std::size_t begin, end;
+        std::uint32_t place; // of its first corner
+        double area;
+    };
+
+    // `halvings`: of the square's sides to come to its quarters'.
+    Divided divide(const Square& square, int halvings) {
         const auto number = static_cast<std::uint32_t>(quads_.size());
         quads_.emplace_back();
-        const auto left = [](const Brought& f) { return f.u.x < 0.5f; };
-        const auto [lower, upper] = halves(found, [](const Brought& f) { return f.u.y < 0.5f; });
-        const auto [q0, q1] = halves(lower, left);
-        const auto [q2, q3] = halves(upper, left);
-        const std::array quarters = {q0, q1, q2, q3};
         std::array<double, 4> weights{};
         Quad made;
-        for (std::size_t q = 0; q < 4; ++q) {
-            for (Brought& f : quarters[q])
-                f.u = {2 * f.u.x - static_cast<float>(q % 2), 2 * f.u.y - static_cast<float>(q / 2)};
-            weights[q] = quarter(quarters[q], 0.25 * area, halvings, q, made);
+        const std::uint32_t size = PlaceOrder::kUpper >> 2 * halvings; // places of a quarter
+        std::size_t begin = square.begin;
+        for (std::uint32_t q = 0; q < 4; ++q) {
+            const std::uint32_t place = square.place + q * size;
+            const std::size_t end = q < 3 ? firstFrom(begin, square.end, place + size) : square.end;
+            weights[q] = quarter({begin, end, place, 0.25 * square.area}, halvings, q, made);
+            begin = end;
         }
         const double sum = weights[0] + weights[1] + weights[2] + weights[3];
         for (std::size_t q = 0; q < 4; ++q)
@@ -136,18 +185,17 @@ class RegionLearner {
         return {sum, number};
     }
 
-    double quarter(Found found, double area, int halvings, std::size_t q, Quad& parent) {
-        Brought all;
-        for (const Brought& f : found) all += f;
+    double quarter(const Square& square, int halvings, std::size_t q, Quad& parent) {
+        const Brought all = square.begin < square.end ? upTo_[square.end] - upTo_[square.begin] : Brought();
         // The effective number of records [Kish1965].
         const bool enough = all.first * all.first >= kSquareBright * all.squared;
         if (enough && all.first > least_ && halvings < kMostHalvings) {
-            const Divided divided = divide(found, area, halvings + 1);
+            const Divided divided = divide(square, halvings + 1);
             parent.child[q] = divided.number;
             return divided.weight;
         }
         parent.radiance[q] = perFrame_ * static_cast<float>(all.inverse > 0 ? all.radiance / all.inverse : mean_);
-        return std::sqrt(area * all.second);
+        return std::sqrt(square.area * std::max(0.0, all.second)); // below 0 by rounding, where nothing was brought
     }
 
     // Two levels at a time. `density` of the whole square.
@@ -199,6 +247,10 @@ class RegionLearner {
 
     float perFrame_;
     double least_ = 0, mean_ = 0;
+    std::vector<Brought> found_;                                 // in the order of the records
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order_; // their places, and which they are
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sorted_;
+    std::vector<Brought> upTo_; // sums of all before, in that order; the first is 0
     std::vector<Quad> quads_;
     Learnt learnt_;
 };
@@ -208,16 +260,17 @@ using ShareMoments = std::array<double, kGuidedShares.size()>;
 
 // By every so many-th of the records.
 void judge(const Learnt& learnt, GuideRecords records, std::size_t first, std::size_t step, ShareMoments& moments) {
+    using Lanes = float __attribute__((vector_size(32))); // a share each
+    static_assert(kGuidedShares.size() <= 8);
+    Lanes shares{};
+    for (std::size_t s = 0; s < kGuidedShares.size(); ++s) shares[s] = kGuidedShares[s];
     for (std::size_t i = first; i < records.size(); i += step) {
         const GuideRecord& r = records[i];
         const auto brought = static_cast<double>(r.brought());
         if (!(brought > 0)) continue;
-        const float guided = learnt.guided(r);
+        const Lanes pdf = shares * learnt.guided(r) + (1 - shares) * r.ownPdf, inverse = pdf > 0 ? 1 / pdf : 0;
         const double square = brought * brought / static_cast<double>(r.pdf);
-        for (std::size_t s = 0; s < kGuidedShares.size(); ++s) {
-            const float pdf = kGuidedShares[s] * guided + (1 - kGuidedShares[s]) * r.ownPdf;
-            moments[s] += pdf > 0 ? square / static_cast<double>(pdf) : 0;
-        }
+        for (std::size_t s = 0; s < kGuidedShares.size(); ++s) moments[s] += square * static_cast<double>(inverse[s]);
     }
 }
 
@@ -292,6 +345,7 @@ class GuideTrainer {
 
     TrainedGuide run(double frameRadiance) {
         std::vector<SpaceTree::Place> places;
+        places.reserve(vertices_.size());
         for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
             const PilotVertex& v = vertices_[i];
             if (v.pdf > 0 && v.survival > 0 && (v.goesOn || v.beyond > 0)) places.push_back({v.p, v.face, i});

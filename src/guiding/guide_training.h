@@ -40,7 +40,13 @@ class GivenOff {
 
   private:
     static constexpr std::uint32_t kNone = 0xffffffff;
-    float byItself(std::size_t vertex) const;
+    // Where light comes from: `known`, and that share of what a cell gives off, if any.
+    struct Source {
+        float known = 0, share = 0;
+        std::uint32_t cell = kNone;
+    };
+    // Of what arrives from the direction in which the path goes on at a vertex.
+    Source source(std::size_t vertex) const;
     void spread(std::size_t cells);
 
     std::span<const PilotVertex> vertices_;

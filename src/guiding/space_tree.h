@@ -56,7 +56,8 @@ class SpaceTree {
         float split = 0;
         std::uint32_t axis : 2 = 3, next : 30 = 0;
     };
-    void divide(std::size_t node, std::span<Place>, std::size_t before, std::size_t least);
+    // `others`: room for places.
+    void divide(std::size_t node, std::span<Place>, std::size_t before, std::size_t least, std::vector<Place>& others);
 
     std::vector<Node> nodes_;
     std::vector<std::size_t> ends_; // of the leaves' places
