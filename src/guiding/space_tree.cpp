@@ -55,7 +55,7 @@ std::size_t putFirst(std::span<SpaceTree::Place> places, std::vector<SpaceTree::
 
 } // namespace
 
-SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(kInMedium + 1) {
+SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(kInMedium + 1), numbers_(nodes_.size()) {
     std::vector<Place> others;
     std::span<Place> left = places;
     for (std::size_t face = 0; face <= kInMedium; ++face) {
@@ -63,24 +63,32 @@ SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(kIn
         divide(face, left.first(count), places.size() - left.size(), least, others);
         left = left.subspan(count);
     }
+    for (std::uint32_t face = 0; face <= kInMedium; ++face) depths_[face] = depth(face);
 }
 
 void SpaceTree::divide(std::size_t node, std::span<Place> places, std::size_t before, std::size_t least,
                        std::vector<Place>& others) {
     const Cut cut = places.size() >= 2 * least ? cutThrough(places) : Cut();
     if (cut.axis == 3) {
-        nodes_[node].next = static_cast<std::uint32_t>(ends_.size()) & 0x3fffffff;
+        nodes_[node].next = static_cast<std::uint32_t>(node) & 0x3fffffff;
+        numbers_[node] = static_cast<std::uint32_t>(ends_.size());
         ends_.push_back(before + places.size());
         return;
     }
     const std::size_t below = putFirst(places, others, [cut](const Place& p) { return p.p[cut.axis] < cut.at; });
     const std::size_t children = nodes_.size();
     nodes_.resize(children + 2);
+    numbers_.resize(children + 2);
     nodes_[node].split = cut.at;
     nodes_[node].axis = static_cast<std::uint32_t>(cut.axis) & 3;
     nodes_[node].next = static_cast<std::uint32_t>(children) & 0x3fffffff;
     divide(children, places.first(below), before, least, others);
     divide(children + 1, places.subspan(below), before + below, least, others);
+}
+
+std::uint32_t SpaceTree::depth(std::uint32_t node) const {
+    const Node& n = nodes_[node];
+    return n.next == node ? 0 : 1 + std::max(depth(n.next), depth(n.next + 1));
 }
 
 } // namespace abbe

@@ -3,6 +3,7 @@
 
 #include "math/vec.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,11 +37,16 @@ class SpaceTree {
     // can be halved at all. Puts the places of a leaf side by side; the same for the same places in the same order.
     SpaceTree(std::vector<Place>& places, std::size_t least);
 
-    // Places outside of what is known belong to the leaves next to them.
+    // Places outside of what is known belong to the leaves next to them. As many steps for all leaves of a face: how
+    // deep one lies is not to be foreseen.
     std::uint32_t leaf(Vec3 p, std::uint8_t face) const {
-        const Node* node = &nodes_[face];
-        while (node->axis != 3) node = &nodes_[node->next + (p[static_cast<int>(node->axis)] >= node->split)];
-        return node->next;
+        const std::array<float, 3> place{p.x, p.y, p.z};
+        std::uint32_t node = face;
+        for (std::uint32_t step = 0; step < depths_[face]; ++step) {
+            const Node& n = nodes_[node];
+            node = n.next + (place[n.axis] >= n.split);
+        }
+        return numbers_[node];
     }
     std::size_t leaves() const { return ends_.size(); }
     // Of a leaf, among the places that it was made for.
@@ -48,19 +54,24 @@ class SpaceTree {
         const std::size_t first = leaf > 0 ? ends_[leaf - 1] : 0;
         return {places.data() + first, ends_[leaf] - first};
     }
-    std::size_t bytes() const { return nodes_.size() * sizeof(Node) + ends_.size() * sizeof(std::size_t); }
+    std::size_t bytes() const {
+        return nodes_.size() * (sizeof(Node) + sizeof(std::uint32_t)) + ends_.size() * sizeof(std::size_t);
+    }
 
   private:
-    // Inner: the children are `next` and `next` + 1, below and from `split` on. Leaf (axis 3): `next` is its number.
+    // Inner: the children are `next` and `next` + 1, below and from `split` on. A leaf leads to itself, as no place is
+    // from infinity on.
     struct Node {
-        float split = 0;
-        std::uint32_t axis : 2 = 3, next : 30 = 0;
+        float split = kInfinity;
+        std::uint32_t axis : 2 = 0, next : 30 = 0;
     };
-    // `others`: room for places.
     void divide(std::size_t node, std::span<Place>, std::size_t before, std::size_t least, std::vector<Place>& others);
+    std::uint32_t depth(std::uint32_t node) const; // below it
 
     std::vector<Node> nodes_;
-    std::vector<std::size_t> ends_; // of the leaves' places
+    std::vector<std::uint32_t> numbers_;              // of the leaves, by nodes
+    std::array<std::uint32_t, kInMedium + 1> depths_; // of the trees
+    std::vector<std::size_t> ends_;                   // of the leaves' places
 };
 
 } // namespace abbe
