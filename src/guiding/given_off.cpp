@@ -6,7 +6,7 @@ namespace abbe {
 
 namespace {
 
-constexpr std::size_t kLeastVertices = 64; // of a cell
+constexpr std::size_t kLeastVertices = 32; // of a cell
 constexpr int kSweeps = 6;                 // of light from cell to cell
 
 } // namespace

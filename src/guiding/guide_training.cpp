@@ -10,10 +10,10 @@ namespace abbe {
 
 namespace {
 
-constexpr std::size_t kRegionVertices = 4000; // at least, of a region with a density of its own
+constexpr std::size_t kRegionVertices = 2500; // at least, of a region with a density of its own
 constexpr int kMostHalvings = 9;              // of a hemisphere's side
 constexpr double kSquareBright = 12;          // squares with fewer that brought most of their light are not divided,
-constexpr double kSquareShare = 0.01;         // nor those that have less of a region's light
+constexpr double kSquareShare = 0.005;        // nor those that have less of a region's light
 constexpr float kSmooth = 0.03f; // of what a square has, evenly to its quarters: chance left some of them dark
 constexpr std::array kGuidedShares = {0.f, 0.25f, 0.5f, 0.75f, 0.87f, 0.95f};
 constexpr std::array kDistances = {0.7f, 1.f, 1.4f, 2.f}; // nearness over that of what is seen, in the mean

@@ -22,7 +22,7 @@ constexpr std::uint64_t kGuide = 0x6775696465; // "guide"
 constexpr std::uint32_t kFirstRound = 2;       // samples of each pixel
 constexpr std::size_t kRecordedVertices = 12;  // of a path: later ones matter little
 // Pilots' paths go on while they carry this part of the light: what roulette multiplies is hard to learn from.
-constexpr float kPatience = 5;
+constexpr float kPatience = 15;
 constexpr std::uint32_t kGrowth = 7; // of the number of samples, from round to round at most
 // Of the variance of samples, what has to go for guiding to be worth what it takes, and for more pilots to be worth it.
 constexpr double kWorthGuiding = 0.5, kWorthPilots = 0.15;
