@@ -10,11 +10,10 @@ namespace abbe {
 
 namespace {
 
-constexpr std::size_t kRegionVertices = 2500; // at least, of a region with a density of its own
-constexpr int kMostHalvings = 9;              // of a hemisphere's side
-constexpr double kSquareBright = 12;          // squares with fewer that brought most of their light are not divided,
-constexpr double kSquareShare = 0.005;        // nor those that have less of a region's light
-constexpr float kSmooth = 0.03f; // of what a square has, evenly to its quarters: chance left some of them dark
+constexpr int kMostHalvings = 9;       // of a hemisphere's side
+constexpr double kSquareBright = 12;   // squares with fewer that brought most of their light are not divided,
+constexpr double kSquareShare = 0.005; // nor those that have less of a region's light
+constexpr float kSmooth = 0.03f;       // of what a square has, evenly to its quarters: chance left some of them dark
 constexpr std::array kGuidedShares = {0.f, 0.25f, 0.5f, 0.75f, 0.87f, 0.95f};
 constexpr std::array kDistances = {0.7f, 1.f, 1.4f, 2.f}; // nearness over that of what is seen, in the mean
 constexpr float kSamePlace = 0.05f;                       // sizes of regions over distances: less is no parallax
@@ -343,14 +342,14 @@ class GuideTrainer {
   public:
     explicit GuideTrainer(std::span<const PilotVertex> vertices) : vertices_(vertices), givenOff_(vertices) {}
 
-    TrainedGuide run(double frameRadiance) {
+    TrainedGuide run(double frameRadiance, std::size_t regionVertices) {
         std::vector<SpaceTree::Place> places;
         places.reserve(vertices_.size());
         for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
             const PilotVertex& v = vertices_[i];
             if (v.pdf > 0 && v.survival > 0 && (v.goesOn || v.beyond > 0)) places.push_back({v.p, v.face, i});
         }
-        SpaceTree space(places, kRegionVertices);
+        SpaceTree space(places, regionVertices);
         std::vector<JudgedRegion> learnt(space.leaves());
         parallelFor(learnt.size(), [&](std::size_t i) {
             const std::span<const SpaceTree::Place> members = space.members(places, i);
@@ -399,8 +398,8 @@ class GuideTrainer {
 
 } // namespace
 
-TrainedGuide trainGuide(std::span<const PilotVertex> vertices, double frameRadiance) {
-    return GuideTrainer(vertices).run(frameRadiance);
+TrainedGuide trainGuide(std::span<const PilotVertex> vertices, double frameRadiance, std::size_t regionVertices) {
+    return GuideTrainer(vertices).run(frameRadiance, regionVertices);
 }
 
 } // namespace abbe

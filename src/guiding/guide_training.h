@@ -65,7 +65,10 @@ struct TrainedGuide {
 // the root of the mean square of what a direction brings [Rath2020, eq. 9]; that distance of the sphere on which they
 // are looked at [Ruppert2020, of parallax]; and that share of guided ones whose second moment, foreseen from the same
 // vertices, is the least. One half of them judges what was learnt from the other, so that chance does not count as
-// knowledge. `frameRadiance`: of the paths of the frame in the mean, above 0. The same for the same vertices.
-TrainedGuide trainGuide(std::span<const PilotVertex>, double frameRadiance);
+// knowledge. `frameRadiance`: of the paths of the frame in the mean, above 0. A region with a density of its own has at
+// least so many vertices. The same for the same vertices.
+inline constexpr std::size_t kRegionVertices = 2500;
+TrainedGuide trainGuide(std::span<const PilotVertex>, double frameRadiance,
+                        std::size_t regionVertices = kRegionVertices);
 
 } // namespace abbe

@@ -18,9 +18,13 @@ namespace abbe {
 
 namespace {
 
-constexpr std::uint64_t kGuide = 0x6775696465; // "guide"
-constexpr std::uint32_t kFirstRound = 2;       // samples of each pixel
-constexpr std::size_t kRecordedVertices = 12;  // of a path: later ones matter little
+constexpr std::uint64_t kGuide = 0x6775696465;    // "guide"
+constexpr std::uint64_t kGlance = 0x676c616e6365; // "glance"
+constexpr std::uint32_t kFirstRound = 2;          // samples of each pixel
+// Before it, of every so many-th pixel as long as that leaves enough of them; with few vertices regions are small.
+constexpr int kGlanceStride = 8, kGlancePixels = 2000;
+constexpr std::size_t kGlanceRegion = 1000;
+constexpr std::size_t kRecordedVertices = 12; // of a path: later ones matter little
 // Pilots' paths go on while they carry this part of the light: what roulette multiplies is hard to learn from.
 constexpr float kPatience = 15;
 constexpr std::uint32_t kGrowth = 7; // of the number of samples, from round to round at most
@@ -196,8 +200,12 @@ class GuidePilots {
         const bool always = context_.settings.technique.guiding == Technique::Guiding::always;
         const std::uint32_t all = GuideSize::samples(size);
         std::uint32_t samples = 0;
+        if (!always && !glance()) {
+            if (!stop_()) plan_.findings.verdict = GuideFindings::Verdict::noGain;
+            return std::move(plan_);
+        }
         for (std::uint32_t next = kFirstRound; samples < all; next = std::min(kGrowth * samples, all - samples)) {
-            round(next);
+            round(next, 1, combine64(combine64(context_.settings.seed, kGuide), paths_));
             samples += next;
             if (stop_()) return {nullptr, {}, plan_.rays};
             if (!(radiance_ > 0)) break; // all is dark
@@ -220,6 +228,25 @@ class GuidePilots {
     }
 
   private:
+    // Whether there may be anything to gain, by few pixels: where there is none in any region of theirs, all pixels
+    // would not find enough of it for another round. Nothing is kept of it.
+    bool glance() {
+        const PilotFilm pixels(frame(), 0);
+        const int stride = std::min(kGlanceStride, pixels.columns() * pixels.rows() / kGlancePixels);
+        if (stride < 2) return true;
+        round(kFirstRound, stride, combine64(context_.settings.seed, kGlance));
+        bool gains = true; // so far all is dark
+        if (radiance_ > 0 && !stop_())
+            gains = trainGuide(vertices_, radiance_ / static_cast<double>(paths_), kGlanceRegion).gain > 0;
+        vertices_.clear();
+        variances_.clear();
+        radiance_ = 0;
+        paths_ = 0;
+        return gains && !stop_();
+    }
+
+    PixelBounds frame() const { return context_.scene.frame.area() > 0 ? context_.scene.frame : film_.bounds(); }
+
     // Of one sample, in the mean over the pixels without the hundredth of them that has the most: few samples say
     // little about rare bright ones.
     double takeVariance() {
@@ -240,21 +267,21 @@ class GuidePilots {
                             memoryText(bytes), memoryText(std::max(left, 0.0))));
     }
 
-    // Of so many samples of each pixel, guided by what is known.
-    void round(std::uint32_t samples) {
+    // Of so many samples of each pixel, or of every so many-th of a row, guided by what is known.
+    void round(std::uint32_t samples, int stride, std::uint64_t seed) {
         PathContext context = context_;
-        context.settings.seed = combine64(combine64(context_.settings.seed, kGuide), paths_);
+        context.settings.seed = seed;
         context.guide = guide_.get();
         context.choices |= guide_ != nullptr;
-        const PixelBounds frame = context.scene.frame.area() > 0 ? context.scene.frame : film_.bounds();
-        const PilotFilm pixels(frame, context.settings.seed);
+        const PilotFilm pixels(frame(), seed);
         requireMemoryFor(static_cast<double>(samples) * pixels.columns() * pixels.rows());
         const RouletteReference patient = RouletteReference::constant(kPatience);
         std::vector<RowFound> rows(static_cast<std::size_t>(pixels.rows()));
         parallelFor(rows.size(), [&](std::size_t row) {
             RecordingFilm film(film_, rows[row], guide_.get(), shown_);
             addWorkFlag(WorkFlag::pilot);
-            for (int column = 0; column < pixels.columns() && !stop_(); ++column) {
+            const auto first = static_cast<int>(combine64(seed, row) % static_cast<std::uint64_t>(stride));
+            for (int column = first; column < pixels.columns() && !stop_(); column += stride) {
                 const TileJob job{pixels.pixelOf(column, static_cast<int>(row)), 0, samples, &patient};
                 const PathCounters c = render_(context, film, job).counters;
                 rows[row].rays += c.vertices + c.shadowRays;

@@ -43,7 +43,8 @@ class GuideSize {
     static int within(PixelBounds frame, double paths);
 };
 
-// Rounds of pilots, each guided by what those before have found and with up to seven times as many samples as all of
+// First a glance at an eighth of the pixels, where that are enough: most scenes have nothing to guide and show it. Then
+// rounds of pilots, each guided by what those before have found and with up to seven times as many samples as all of
 // them [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know
 // well enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for
 // nothing. Requires 0 < size <= GuideSize::kMost, and a context with the plans for caustics, if any. `shown`: what
