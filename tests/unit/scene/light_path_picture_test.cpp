@@ -136,7 +136,7 @@ TEST_CASE("light paths: a sample taken again is what camera paths bring, and tog
     const auto tracer = makePathTracer(image.scene.scene().effects);
     for (const Vec2i at : {Vec2i{12, 8}, Vec2i{3, 12}}) {
         PixelFilm film = Picture::makeFilm(image.scene);
-        film.keepSplats();
+        film.keepSplatsOf(*tracer, image.scene.scene(), image.scene.settings());
         std::vector<SampleId> samples;
         for (std::uint32_t i = 0; i < 32; ++i) samples.push_back({at.x, at.y, 0, i});
         tracer->repeat(image.scene.scene(), film, image.scene.settings(), samples);
