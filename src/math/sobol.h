@@ -1,4 +1,4 @@
-// Owen-scrambled Sobol points, eight dimensions to a register.
+// Owen-scrambled points of digital sequences as Sobol's are, eight dimensions to a register.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,8 @@ inline constexpr int kSobolDimensions = 24;
 struct SobolTable {
     alignas(64) std::uint32_t rows[8][16][kSobolDimensions];
 };
-// Primitive polynomials and initial numbers of [Joe2008] (file new-joe-kuo-6).
+// Dimensions 0 and 1, 4 and 5, 7 and 8, 9 and 10, … 13 and 14, 16 and 17, … 22 and 23 are (0, 2)-sequences, as Sobol's
+// first two are [Paulin2021]; 0 to 3 and 6 are those of [Joe2008], and 6 and 15 stand alone.
 extern const SobolTable kSobolTable;
 
 inline std::uint32_t reverseBits(std::uint32_t x) {

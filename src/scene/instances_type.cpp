@@ -1,6 +1,7 @@
 #include "io/file.h"
 #include "io/ply_points.h"
 #include "math/frame.h"
+#include "math/joe_kuo.h"
 #include "math/sobol.h"
 #include "scene/file_faults.h"
 #include "scene/instance_builder.h"
@@ -225,7 +226,7 @@ bool visitScatter(const InstancesParams& p, const PlaceContext& context, const P
     const auto count = static_cast<std::uint32_t>(*p.count);
     for (std::uint32_t i = 0; i < count; ++i) {
         alignas(32) float u[8];
-        scrambledSobol8(i, seed, 0, u);
+        joeKuoPoint(i, seed, u);
         const auto d = [&u](int k) { return static_cast<double>(u[k]); };
         const SurfacePoint at = context.surface ? pointOn(*context.surface, d(2), d(0), d(1))
                                                 : pointIn(p.area.value_or(Vec2d{1, 1}), context.up, d(0), d(1));

@@ -3,6 +3,7 @@
 #include "support/statistics.h"
 #include "transport/sampler.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -85,22 +86,90 @@ TEST_CASE("sampler: every joint dimension is a (0, m, 1)-net in every aligned bl
     }
 }
 
-TEST_CASE("sampler: the first two dimensions are a (0, m, 2)-net: every elementary interval has its point") {
-    for (const std::uint64_t seed : {0ull, 7ull, 0xfeedull})
-        for (std::uint32_t m = 1; m <= 11; ++m) {
-            const std::uint32_t n = 1u << m;
-            for (std::uint32_t k = 0; k <= m; ++k) { // intervals of 2^-k by 2^-(m-k)
-                Sampler s = pixelSampler(seed);
-                std::set<std::uint32_t> met;
-                for (std::uint32_t i = 0; i < n; ++i) {
-                    s.start(i);
-                    const Vec2 u = s.vertex(0).bsdf;
-                    met.insert(cell(u.x, 1u << k) << (m - k) | cell(u.y, 1u << (m - k)));
-                }
-                INFO("m " << m << ", k " << k);
-                CHECK(met.size() == n);
-            }
+namespace {
+
+// What of the points is drawn together, out of a sampler that stands at one.
+using Pair = Vec2 (*)(Sampler&);
+struct NamedPair {
+    const char* name;
+    Pair pair;
+};
+constexpr NamedPair kPairs[] = {
+    {"BSDF of the first vertex", [](Sampler& s) { return s.vertex(0).bsdf; }},
+    {"light of the first vertex", [](Sampler& s) { return s.vertex(0).light; }},
+    {"BSDF of the second vertex", [](Sampler& s) { return s.vertex(1).bsdf; }},
+    {"BSDF of the third vertex", [](Sampler& s) { return s.vertex(2).bsdf; }},
+    {"light of the third vertex", [](Sampler& s) { return s.vertex(2).light; }},
+    {"film", [](Sampler& s) { return s.film(); }},
+    {"lens", [](Sampler& s) { return s.lens(); }},
+    {"choices of the first vertex",
+     [](Sampler& s) {
+         return Vec2{s.vertex(0).pick, s.vertex(0).lobe};
+     }},
+    {"choices of the second vertex",
+     [](Sampler& s) {
+         return Vec2{s.vertex(1).pick, s.vertex(1).lobe};
+     }},
+    {"light of a later vertex", [](Sampler& s) { return s.vertex(7).light; }},
+};
+
+// Whether every elementary interval of 2^m points has one, of which 2^(m - digits) are needed at the most: the digits
+// of each number are shared out in all ways.
+bool isNet(std::uint64_t seed, std::uint32_t m, std::uint32_t digits, std::initializer_list<Pair> pairs) {
+    std::vector<std::array<float, 4>> points;
+    Sampler s = pixelSampler(seed);
+    for (std::uint32_t i = 0; i < 1u << m; ++i) {
+        s.start(i);
+        std::array<float, 4> point{};
+        std::size_t d = 0;
+        for (const Pair pair : pairs) {
+            const Vec2 u = pair(s);
+            point[d++] = u.x;
+            point[d++] = u.y;
         }
+        points.push_back(point);
+    }
+    const std::uint32_t last = pairs.size() == 2 ? digits : 0;
+    for (std::uint32_t a = 0; a <= digits; ++a)
+        for (std::uint32_t b = 0; a + b <= digits; ++b)
+            for (std::uint32_t c = 0; c <= std::min(last, digits - a - b); ++c) {
+                const std::uint32_t rest = digits - a - b - c;
+                if (last == 0 && rest > 0) continue;
+                std::vector<std::uint32_t> counts(1u << digits);
+                for (const auto& p : points)
+                    ++counts[((cell(p[0], 1u << a) << b | cell(p[1], 1u << b)) << c | cell(p[2], 1u << c)) << rest |
+                             cell(p[3], 1u << rest)];
+                if (std::ranges::any_of(counts, [&](auto n) { return n != 1u << (m - digits); })) return false;
+            }
+    return true;
+}
+
+} // namespace
+
+TEST_CASE("sampler: pairs are (0, m, 2)-nets: every elementary interval has its point") {
+    for (const std::uint64_t seed : {0ull, 7ull, 0xfeedull})
+        for (std::uint32_t m = 1; m <= 13; ++m) // beyond those that were searched
+            for (const NamedPair& p : kPairs) {
+                INFO(p.name << ", m " << m);
+                CHECK(isNet(seed, m, m, {p.pair}));
+            }
+}
+
+TEST_CASE("sampler: pairs that matter together are nets of four dimensions, up to a factor of two or four") {
+    const Pair bsdf = [](Sampler&s) { return s.vertex(0).bsdf; }, light = [](Sampler&s) { return s.vertex(0).light; };
+    const Pair nextLight = [](Sampler&s) { return s.vertex(1).light; }, film = [](Sampler&s) { return s.film(); };
+    for (const std::uint64_t seed : {0ull, 7ull}) {
+        for (const std::uint32_t m : {2u, 3u, 4u}) {
+            INFO("m " << m);
+            CHECK(isNet(seed, m, m - 1, {film, light}));
+        }
+        for (const std::uint32_t m : {3u, 4u, 5u, 6u}) {
+            INFO("m " << m);
+            CHECK(isNet(seed, m, m - 2, {film, light}));
+            CHECK(isNet(seed, m, m - 2, {bsdf, film}));
+            CHECK(isNet(seed, m, m - 2, {bsdf, nextLight}));
+        }
+    }
 }
 
 TEST_CASE("sampler: sets of later vertices are nets of their own") {
