@@ -4,7 +4,7 @@
 source "$(dirname -- "$0")/lib.sh" "$@"
 
 # A lamp so bright that what meets it is beyond all sums.
-sed 's/^light lamp/light flare sphere { center 0.6 1.2 0; radius 1 cm; luminance 1e20 nits }\n&/' "$scenes/room.scene" >flare.scene
+sed 's/^light lamp/light flare sphere { center 0.6 1.2 0; radius 1.5 cm; luminance 1e20 nits }\n&/' "$scenes/room.scene" >flare.scene
 grep -q flare flare.scene || fault "no lamp in flare.scene"
 expect 0 flare.scene --size 48x32 --samples 16 -o flare.exr
 says err W0640
@@ -16,7 +16,7 @@ expect 0 info flare.exr
 says out "abbe.droppedSamples = "
 
 # Pixels that have lost all of theirs are not those of a render whose time ended.
-sed 's/radius 1 cm; luminance 1e20/radius 30 cm; luminance 1e20/' flare.scene >glare.scene
+sed 's/radius 1.5 cm; luminance 1e20/radius 30 cm; luminance 1e20/' flare.scene >glare.scene
 expect 0 glare.scene --size 48x32 --samples 2 -o glare.exr
 says err W0668
 says err "all samples of some pixels were dropped"

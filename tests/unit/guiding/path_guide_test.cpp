@@ -126,7 +126,7 @@ TEST_CASE("a guide finds a small source at infinity, and draws directions with t
         CHECK(view.guided() >= 0.75f);
         CHECK(view.region().nearness == 0);
         CHECK(view.look(source).pdf > 5);
-        CHECK(view.look(source).radiance > 5);
+        CHECK(view.look(source).radiance > 4); // its square is larger than the cone
         CHECK(integral(view) == doctest::Approx(1).epsilon(0.004));
         checkDraws(view);
     }
