@@ -76,9 +76,9 @@ TEST_CASE("scenes: strategies agree") {
         INFO(path.string());
         ++scenes;
         const int before = compared;
-        const TestImage mis = renderScene(path, Strategy::mis, 1);
-        if (!mirrorsLights(path)) compared += agree(renderScene(path, Strategy::lightsOnly, 2), mis);
-        if (!smallLights(path)) compared += agree(renderScene(path, Strategy::bsdfOnly, 3), mis);
+        const TestImage mis = renderScene(path, Strategy::mis, 4);
+        if (!mirrorsLights(path)) compared += agree(renderScene(path, Strategy::lightsOnly, 5), mis);
+        if (!smallLights(path)) compared += agree(renderScene(path, Strategy::bsdfOnly, 6), mis);
         if (compared == before) uncounted += " " + path.stem().string();
         CHECK(mis.statistics.dropped == std::array<std::uint64_t, 3>{});
         CHECK(mis.statistics.cappedPaths == 0);
