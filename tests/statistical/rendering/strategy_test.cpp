@@ -112,7 +112,7 @@ TEST_CASE("guided paths in fog, of phase functions that are even and that are no
             fmt::format("shape fog box {{ min -0.99 -0.99 -0.99; max 0.99 0.99 0.99; material boundary; interior "
                         "homogeneous {{ extinction 0.8 per-m; albedo 0.9; phase {} }} }}\n",
                         std::string(phase)),
-            Technique::LightPaths::off, 0.02, 320);
+            Technique::LightPaths::off, 0.02, 512);
 }
 
 TEST_CASE("guided paths beside light paths") {

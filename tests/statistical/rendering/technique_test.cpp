@@ -35,7 +35,7 @@ TechniqueScene roughGlass() {
     return {kOpenBox + kTechniqueLight +
                 "shape sphere { center 0 -0.45 0; radius 0.5; material dielectric { ior cauchy 1.4 0.03; roughness 0.9;"
                 " absorption table 400 0.5 700 0.1 } }\n",
-            512};
+            768};
 }
 // Polished glass, which ends all wavelengths but one.
 TechniqueScene polishedGlass() {
