@@ -78,7 +78,7 @@ TEST_CASE("light paths: a gold ring") {
                                "shape subdivision \"scenes/gold-ring/ring.obj\" { dicing 2\n"
                                "    material conductor { index metal Au; roughness 0.3 }; transform { scale 0.08 } }\n"
                                "light sphere { center -2 3 -3; radius 0.8; radiance 10 }\n"),
-                32, 0.004);
+                48, 0.004);
 }
 
 TEST_CASE("light paths: a prism that disperses") {

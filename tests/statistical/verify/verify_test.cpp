@@ -35,7 +35,7 @@ TestScene small(const Case& c) {
 VerifyReport run(const TestScene& scene, std::uint64_t seed, std::optional<std::uint32_t> samples = {}) {
     scene.scene(); // without errors
     VerifyPlan plan;
-    plan.resolution = nightly() ? 0.001 : 0.0015;
+    plan.resolution = nightly() ? 0.001 : 0.0012;
     plan.timeLimit = 1e9; // the same in every run
     plan.seed = seed;
     plan.samples = samples;
