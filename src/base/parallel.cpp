@@ -14,6 +14,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
 namespace abbe {
@@ -63,8 +64,11 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     }
     if (failure) std::rethrow_exception(failure);
 }
+void parallelParts(std::size_t count, const std::function<void(std::size_t)>& body) { parallelFor(count, body); }
 #else
-void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+
+namespace {
+void loop(std::size_t count, const std::function<void(std::size_t)>& body) {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
@@ -73,6 +77,19 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
             for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
         },
         tbb::simple_partitioner{});
+}
+} // namespace
+
+// Where nothing else is said, TBB has no more threads at a loop than there are cores.
+void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    if (tbb::this_task_arena::max_concurrency() >= threadCount()) return loop(count, body);
+    tbb::task_arena arena(threadCount());
+    arena.execute([&] { loop(count, body); });
+}
+
+void parallelParts(std::size_t count, const std::function<void(std::size_t)>& body) {
+    if (count == 1) return body(0);
+    tbb::this_task_arena::isolate([&] { loop(count, body); });
 }
 #endif
 

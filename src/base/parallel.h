@@ -8,13 +8,18 @@
 
 namespace abbe {
 
-// Limits all loops of the process to `threads` workers (0: one per core). Call once, before the first loop.
+// All loops of the process are run by so many workers (0: one per core), be there more cores or fewer. Call once,
+// before the first loop.
 void setThreadCount(int threads);
 int threadCount();
 
 // Calls body(i) for every i in [0, count), in any order, from many threads. Each worker has flush-to-zero and
 // denormals-are-zero set (Embree asks for it, and denormals cost a hundredfold). Exceptions propagate to the caller.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
+
+// The same from within the body of another loop, whose caller may hold locks: workers that have nothing to do take
+// part, and while the caller waits for them it does no other work than this loop's.
+void parallelParts(std::size_t count, const std::function<void(std::size_t)>& body);
 
 // Sets flush-to-zero and denormals-are-zero in the calling thread.
 void flushDenormals();

@@ -23,11 +23,14 @@ class Stopwatch {
     Clock::time_point start_ = Clock::now();
 };
 
-// Of all threads of this process so far.
-inline double processSeconds() {
+inline double secondsOf(clockid_t clock) {
     timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    clock_gettime(clock, &t);
     return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
 }
+
+// Of all threads of this process so far, and of this thread.
+inline double processSeconds() { return secondsOf(CLOCK_PROCESS_CPUTIME_ID); }
+inline double threadSeconds() { return secondsOf(CLOCK_THREAD_CPUTIME_ID); }
 
 } // namespace abbe

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "caustics/light_tracing/light_path_plan.h"
 #include "light_sampling/light_sampler.h"
 #include "path_tracing/path_kernels.h"
@@ -15,7 +16,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <ctime>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -29,12 +30,6 @@ constexpr double kPortionSeconds = 0.4;
 // s: a portion that is predicted to go on for longer than this after the time limit is not begun, and what goes on then
 // is cut short.
 constexpr double kOvertime = 0.1;
-
-double threadSeconds() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
     return lights.needsChoice() || technique.directions != Technique::Directions::importance ||
@@ -169,8 +164,12 @@ class RenderJob {
         std::vector<std::size_t> open;
         for (std::size_t i = 0; i < state_.tileCount(); ++i)
             if (state_.tile(i).reached < last) open.push_back(i);
-        // In this order: a picture that is ended before its first light paths would lack all of their light.
-        std::ranges::stable_partition(open, [this](std::size_t i) { return state_.isLightBlock(i); });
+        // In this order: a picture that is ended before its first light paths would lack all of their light. Of tiles
+        // the dearest go first, or one of them would be begun last, and all threads but one wait for it [Graham1969].
+        const auto tiles =
+            std::ranges::stable_partition(open, [this](std::size_t i) { return state_.isLightBlock(i); });
+        std::ranges::stable_sort(tiles, std::greater(),
+                                 [this](std::size_t i) { return state_.tile(i).tally.coreSeconds; });
         bool goesOn = true; // else what is left of the pass would end after the time limit
         do {
             advanced_ = false;
@@ -197,7 +196,7 @@ class RenderJob {
                 advanced_ = true;
                 const double before = threadSeconds();
                 const TileResult result = work(i, {end, tile.cut ? tile.cut->at : PortionPlace()});
-                tally = tallyOf(result, threadSeconds() - before);
+                tally = tallyOf(result, threadSeconds() - before + result.secondsElsewhere);
                 chains = result.counters.manifold;
                 cappedIn = result.counters.cappedIn;
                 tile.tally.add(tally);

@@ -6,8 +6,17 @@
 #include "caustics/merging/photon_path.h"
 #include "caustics/shared/kernel_jobs.h"
 #include "caustics/shared/light_start.h"
+#include "caustics/shared/shared_work.h"
 #include "render/film.h"
 #include "transport/camera_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace abbe {
 
@@ -31,23 +40,204 @@ class BrightnessAround {
         itself = before;
     }
     // The brightest of the others within kReach.
-    float of(int x, int y) { return most(x, y); }
+    float of(int x, int y) const { return most_[place(x, y)]; }
 
   private:
-    float& most(int x, int y) {
-        return most_[static_cast<std::size_t>(bounds_.width()) * static_cast<std::size_t>(y - bounds_.y0) +
-                     static_cast<std::size_t>(x - bounds_.x0)];
+    float& most(int x, int y) { return most_[place(x, y)]; }
+    std::size_t place(int x, int y) const {
+        return static_cast<std::size_t>(bounds_.width()) * static_cast<std::size_t>(y - bounds_.y0) +
+               static_cast<std::size_t>(x - bounds_.x0);
     }
+
     PixelBounds bounds_;
     std::vector<float> most_;
 };
 
-// A round is a picture of its own: light paths and camera paths are those of its number alone, whoever makes it.
+// What the paths of one round share.
+struct MergeRound {
+    int replicate = 0;
+    std::uint32_t number = 0;
+    Wavelengths lambda;
+    float time = 0;   // as CameraSample::time
+    float radius = 0; // over that of cones
+};
+
+// Of one light, for light groups.
+struct MergedSum {
+    const Light* light = nullptr;
+    Spectrum radiance{0.f}, closer{0.f};
+};
+
+// What a pixel is to have of a round.
+struct MergedPixel {
+    int x = 0, y = 0;
+    double factor = 0;
+    MergedSum sum;
+};
+
+// Traces paths of rounds, of lights and of the camera.
+template <EffectBits E> class MergeTracer {
+  public:
+    MergeTracer(const PathContext& context, const Film& film, const MergeJob& job, MergeListener* listener)
+        : context_(context), plan_(*context.merging), film_(film), job_(job), listener_(listener),
+          media_(PathWalk<E>::makeMedia(context.scene, *context.stop)) {}
+
+    // What the round's light paths [first, last) leave.
+    void trace(const MergeRound& round, std::uint32_t first, std::uint32_t last, std::vector<Photon>& photons) {
+        std::uint64_t startedAs = ~std::uint64_t{0};
+        for (std::uint32_t j = first; j < last && !left(); ++j) {
+            const std::uint64_t path = std::uint64_t{round.number} * plan_.photons + j;
+            if (path >> 32 != startedAs) { // sequences have 2^32 points
+                startedAs = path >> 32;
+                sampler_.startPixel(combine64(key(kPhoton, round.replicate), startedAs), Technique::Numbers::sobol,
+                                    true);
+            }
+            sampler_.start(static_cast<std::uint32_t>(path));
+            traceOne(round, photons);
+        }
+    }
+
+    // What camera paths find in the pixels of the rows [y0, y1), here and below, unless they are told to stop. Of a
+    // part of the pixels, others in each round, spread evenly [Roberts2018]; the first is in the middle.
+    void gatherSome(const MergeRound& round, int y0, int y1, const PhotonMaps& photons,
+                    std::vector<MergedPixel>& gathered) {
+        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
+        const auto phase = [&](double golden) {
+            const double place = 0.5 + round.number * golden;
+            return static_cast<int>((place - std::floor(place)) * job_.step);
+        };
+        const int px = phase(0.7548776662466927), py = phase(0.5698402909980532);
+        for (int y = y0; y < y1 && !left(); ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x)
+                if ((x - frame.x0) % job_.step == px && (y - frame.y0) % job_.step == py)
+                    gather(round, {x, y, round.number, kGather, 1}, photons, gathered);
+    }
+    // By one path for every pixel.
+    void gatherFirst(const MergeRound& round, PixelBounds pixels, const PhotonMaps& photons,
+                     std::vector<MergedPixel>& gathered) {
+        for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x)
+                gather(round, {x, y, round.number, kGather, 1}, photons, gathered);
+    }
+    // By as many more as more(x, y) says.
+    template <typename More>
+    void gatherMore(const MergeRound& round, PixelBounds pixels, const PhotonMaps& photons, const More& more,
+                    std::vector<MergedPixel>& gathered) {
+        for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x) {
+                const std::uint32_t n = more(x, y);
+                const double share = 1 / (1 + static_cast<double>(n));
+                for (std::uint32_t j = 0; j < n; ++j)
+                    gather(round, {x, y, round.number * plan_.more + j, kGatherMore, share}, photons, gathered);
+            }
+    }
+
+    bool left() const { return media_.left() || counters_.left || context_.toldToStop(); }
+
+    // Since it was asked last.
+    PathCounters takeCounters() { return std::exchange(counters_, {}); }
+    // In all.
+    DensityExcess excess() const {
+        if constexpr (PathWalk<E>::kMedia) return media_.tracker.counters.excess();
+        return {};
+    }
+
+  private:
+    static constexpr std::uint64_t kPhoton = 0x70686f746f6e, kGather = 0x676174686572, kGatherMore = 0x676174686d6f7265;
+
+    // A camera path: its number of those that the pixel has for this purpose, and what part of the pixel's it is.
+    struct GatherId {
+        int x, y;
+        std::uint32_t number;
+        std::uint64_t purpose;
+        double share;
+    };
+
+    std::uint64_t key(std::uint64_t purpose, int replicate) const {
+        return combine64(combine64(context_.settings.seed, purpose), static_cast<std::uint64_t>(replicate));
+    }
+
+    void traceOne(const MergeRound& round, std::vector<Photon>& photons) {
+        const Scene& scene = context_.scene;
+        const auto start = startOfLightPath(plan_.emission, sampler_, round.lambda, scene.camera->rayTime(round.time));
+        if (!start) return;
+        if (listener_) listener_->starts(*start);
+        if (!plan_.lights.contains(start->light) || isShaded(scene, *start)) return;
+        PhotonPath<E> path(context_, sampler_, arena_, vertexArenas_, counters_, media_);
+        path.walk().startIn(surroundingsOf(scene, *start));
+        path.leavePhotons(*start, round.lambda, [&](Photon photon) {
+            photon.flux *= 1 / static_cast<float>(plan_.photons);
+            photons.push_back(photon);
+        });
+        removeWorkFlag(WorkFlag::heroOnly);
+    }
+
+    static std::uint64_t raysOf(const PathCounters& c) { return c.vertices + c.shadowRays; }
+
+    void gather(const MergeRound& round, const GatherId& id, const PhotonMaps& photons,
+                std::vector<MergedPixel>& gathered) {
+        const auto place =
+            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(id.y)) << 32) | static_cast<std::uint32_t>(id.x);
+        sampler_.startPixel(combine64(key(id.purpose, round.replicate), place), Technique::Numbers::sobol, true);
+        sampler_.start(id.number);
+        const FilterSample filter = film_.filter(sampler_.film());
+        const CameraSample at{
+            {static_cast<float>(id.x) + 0.5f + filter.offset.x, static_cast<float>(id.y) + 0.5f + filter.offset.y},
+            sampler_.lens(),
+            round.time,
+            round.lambda.nm[0]};
+        const CameraRay camera = context_.scene.camera->ray(at);
+        if (listener_) listener_->begins(id.x, id.y);
+        if (!(camera.weight > 0)) return;
+        const std::uint64_t before = raysOf(counters_);
+        GatherPath<E> path(context_, sampler_, arena_, counters_, media_);
+        startFromCamera(path.walk(), at, camera, surroundings_);
+        const auto factor = static_cast<double>(camera.weight * filter.weight);
+        sums_.clear();
+        path.gather(camera.ray, round.lambda, camera.heroOnly, photons, round.radius, [&](const GatheredLight& light) {
+            if (listener_) tell(round, light, factor);
+            MergedSum& sum = sumOf(light.photon.light);
+            sum.radiance += light.value;
+            sum.closer += light.value * light.closer;
+        });
+        removeWorkFlag(WorkFlag::heroOnly);
+        if (listener_) listener_->ends(raysOf(counters_) - before);
+        for (const MergedSum& sum : sums_) gathered.push_back({id.x, id.y, factor * id.share, sum});
+    }
+
+    MergedSum& sumOf(const Light* light) {
+        for (MergedSum& sum : sums_)
+            if (sum.light == light) return sum;
+        return sums_.emplace_back(MergedSum{light});
+    }
+
+    void tell(const MergeRound& round, const GatheredLight& light, double factor) const {
+        const double found = context_.scene.sensor(light.value, round.lambda).y * factor;
+        const double odds = static_cast<double>(light.photon.cameraOdds) * static_cast<double>(light.cameraPdf);
+        const double one = found * plan_.photons / static_cast<double>(light.kernel); // by a single light path
+        listener_->gathers(light.photon, found, odds > 0 ? one / odds : 0);
+    }
+
+    const PathContext& context_;
+    const MergePlan& plan_;
+    const Film& film_;
+    const MergeJob& job_;
+    MergeListener* const listener_;
+    Sampler sampler_;
+    Arena arena_;
+    VertexArenas vertexArenas_;
+    CameraSurroundings surroundings_;
+    typename PathWalk<E>::Media media_;
+    std::vector<MergedSum> sums_; // of this pixel
+    PathCounters counters_;
+};
+
+// A round is a picture of its own: light paths and camera paths are those of its number alone, whoever makes it. Idle
+// threads take part in it, unless somebody listens.
 template <EffectBits E> class MergeKernel {
   public:
     MergeKernel(const PathContext& context, Film& film, const MergeJob& job, MergeListener* listener)
-        : context_(context), plan_(*context.merging), film_(film), job_(job), listener_(listener),
-          media_(PathWalk<E>::makeMedia(context.scene, *context.stop)) {}
+        : context_(context), plan_(*context.merging), film_(film), job_(job), listener_(listener) {}
 
     TileResult run() {
         const WorkScope work(Work::lights);
@@ -58,205 +248,157 @@ template <EffectBits E> class MergeKernel {
                 if (unit >= job_.from && i % plan_.every == 0 && i / plan_.every % job_.blocks == job_.block)
                     if (!round(r, i / plan_.every)) result_.rest = {unit, 0};
         removeWorkFlag(WorkFlag::light);
-        if constexpr (PathWalk<E>::kMedia) result_.excess = media_.tracker.counters.excess();
+        for (const auto& tracer : tracers_.all()) result_.excess.add(tracer->excess());
+        result_.secondsElsewhere = shared_.secondsElsewhere();
         return std::move(result_);
     }
 
   private:
-    static constexpr std::uint64_t kRound = 0x726f756e64, kPhoton = 0x70686f746f6e, kGather = 0x676174686572,
-                                   kGatherMore = 0x676174686d6f7265;
-
-    std::uint64_t key(std::uint64_t purpose, int replicate) const {
-        return combine64(combine64(context_.settings.seed, purpose), static_cast<std::uint64_t>(replicate));
-    }
+    static constexpr std::uint64_t kRound = 0x726f756e64;
+    static constexpr std::uint32_t kPathsOfPart = 256;      // of light
+    static constexpr int kPixelsOfPart = 256;               // as many rows as have so many
+    using Gathered = std::vector<std::vector<MergedPixel>>; // by parts of the picture, in the order of the pixels
 
     // Whether it came to its end. A round of which something is left out would be too dark: it is left out as a whole.
     bool round(int replicate, std::uint32_t number) {
-        sampler_.startPixel(key(kRound, replicate), Technique::Numbers::sobol, true);
-        sampler_.start(number);
-        lambda_ = context_.scene.wavelengths.sample(sampler_.wavelength());
-        time_ = sampler_.time();
-        radius_ = job_.wider * MergePlan::radius(number);
-        const PathCounters before = result_.counters;
-        const PhotonMaps photons(trace(replicate, number));
-        const std::uint64_t photonRays = raysOf(result_.counters) - raysOf(before);
-        if (!gatherAll(replicate, number, photons)) {
-            result_.counters = before;
-            return false;
-        }
-        for (const Gathered& g : gathered_) add(g, replicate, number);
+        const MergeRound round = begin(replicate, number);
+        const PhotonMaps photons(trace(round));
+        const PathCounters ofPhotons = takeCounters();
+        const Gathered parts = gather(round, photons);
+        const PathCounters ofPixels = takeCounters();
+        if (left_) return false;
+        result_.counters.add(ofPhotons);
+        result_.counters.add(ofPixels);
+        for (const std::vector<MergedPixel>& part : parts)
+            for (const MergedPixel& pixel : part) add(pixel, round);
         film_.countRounds(replicate, 1);
         ++result_.rounds;
-        result_.photonRays += photonRays;
+        result_.photonRays += ofPhotons.vertices + ofPhotons.shadowRays;
         result_.photons += photons.size();
         result_.lightPaths += plan_.photons;
         return true;
     }
 
-    static std::uint64_t raysOf(const PathCounters& c) { return c.vertices + c.shadowRays; }
+    MergeRound begin(int replicate, std::uint32_t number) const {
+        Sampler sampler;
+        sampler.startPixel(combine64(combine64(context_.settings.seed, kRound), static_cast<std::uint64_t>(replicate)),
+                           Technique::Numbers::sobol, true);
+        sampler.start(number);
+        return {replicate, number, context_.scene.wavelengths.sample(sampler.wavelength()), sampler.time(),
+                job_.wider * MergePlan::radius(number)};
+    }
 
-    // Unless it is told to stop.
-    bool gatherAll(int replicate, std::uint32_t number, const PhotonMaps& photons) {
-        gathered_.clear();
+    // In the order of the light paths.
+    std::vector<Photon> trace(const MergeRound& round) {
+        const std::uint32_t size = listener_ ? std::max(1u, plan_.photons) : kPathsOfPart;
+        std::vector<std::vector<Photon>> parts((plan_.photons + size - 1) / size);
+        share(parts.size(), [&](MergeTracer<E>& tracer, std::size_t i) {
+            const auto first = static_cast<std::uint32_t>(i) * size;
+            tracer.trace(round, first, std::min(plan_.photons, first + size), parts[i]);
+        });
+        if (parts.size() == 1) return std::move(parts[0]);
+        std::vector<Photon> all;
+        std::size_t count = 0;
+        for (const std::vector<Photon>& part : parts) count += part.size();
+        all.reserve(count);
+        for (std::vector<Photon>& part : parts) {
+            all.insert(all.end(), part.begin(), part.end());
+            part = {};
+        }
+        return all;
+    }
+
+    Gathered gather(const MergeRound& round, const PhotonMaps& photons) {
+        const PixelBounds film = film_.bounds();
         if (job_.step > 1)
-            gatherSome(replicate, number, photons);
-        else
-            gatherFirst(replicate, number, photons);
-        if (plan_.more > 0 && job_.step == 1) gatherMore(replicate, number, photons);
-        return !left();
-    }
-
-    // In a part of the pixels, others in each round, spread evenly [Roberts2018]; the first is in the middle.
-    void gatherSome(int replicate, std::uint32_t number, const PhotonMaps& photons) {
-        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
-        const auto phase = [&](double golden) {
-            const double place = 0.5 + number * golden;
-            return static_cast<int>((place - std::floor(place)) * job_.step);
-        };
-        const int px = phase(0.7548776662466927), py = phase(0.5698402909980532);
-        for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
-            for (int x = pixels.x0; x < pixels.x1; ++x)
-                if ((x - frame.x0) % job_.step == px && (y - frame.y0) % job_.step == py)
-                    gather({x, y, replicate, number}, key(kGather, replicate), 1, photons);
-    }
-
-    // By one path for every pixel of the film, and for those of the frame near it, which tell of theirs.
-    void gatherFirst(int replicate, std::uint32_t number, const PhotonMaps& photons) {
-        const PixelBounds frame = context_.scene.frame, film = film_.bounds();
+            return inRows(film, [&](MergeTracer<E>& tracer, PixelBounds rows, std::vector<MergedPixel>& to) {
+                tracer.gatherSome(round, rows.y0, rows.y1, photons, to);
+            });
+        // Pixels of the frame near the film tell of theirs.
+        const PixelBounds frame = context_.scene.frame;
         const int near = plan_.more > 0 ? BrightnessAround::kReach : 0;
         const PixelBounds seen{std::max(frame.x0, film.x0 - near), std::max(frame.y0, film.y0 - near),
                                std::min(frame.x1, film.x1 + near), std::min(frame.y1, film.y1 + near)};
-        if (plan_.more > 0) around_.start(seen);
-        for (int y = seen.y0; y < seen.y1 && !left(); ++y)
-            for (int x = seen.x0; x < seen.x1; ++x) {
-                const double luminance = gather({x, y, replicate, number}, key(kGather, replicate), 1, photons);
-                if (plan_.more > 0 && luminance != 0) around_.add(x, y, static_cast<float>(std::abs(luminance)));
-            }
-        std::erase_if(gathered_, [&](const Gathered& g) {
-            return g.x < film.x0 || g.y < film.y0 || g.x >= film.x1 || g.y >= film.y1;
+        Gathered all = inRows(seen, [&](MergeTracer<E>& tracer, PixelBounds rows, std::vector<MergedPixel>& to) {
+            tracer.gatherFirst(round, rows, photons, to);
         });
+        if (plan_.more > 0) gatherMore(round, seen, photons, all);
+        return all;
     }
 
     // A camera path that a rim may mirror meets a caustic or does not, and its pixel is as noisy as chance makes that,
     // however many photons there are. So where light is there are more. Neighbours tell where: by its own path a pixel
     // that has not met the light would count as dark, and too bright where it has.
-    void gatherMore(int replicate, std::uint32_t number, const PhotonMaps& photons) {
+    void gatherMore(const MergeRound& round, PixelBounds seen, const PhotonMaps& photons, Gathered& all) {
         const PixelBounds film = film_.bounds();
-        for (Gathered& g : gathered_) g.factor /= 1 + static_cast<double>(more(g.x, g.y));
-        for (int y = film.y0; y < film.y1 && !left(); ++y)
-            for (int x = film.x0; x < film.x1; ++x) {
-                const std::uint32_t n = more(x, y);
-                const double share = 1 / (1 + static_cast<double>(n));
-                for (std::uint32_t j = 0; j < n; ++j)
-                    gather({x, y, replicate, number * plan_.more + j}, key(kGatherMore, replicate), share, photons);
+        look(round, seen, all);
+        const auto more = [this](int x, int y) { return plan_.moreBeside(around_.of(x, y)); };
+        for (std::vector<MergedPixel>& part : all) {
+            std::erase_if(part, [&](const MergedPixel& g) {
+                return g.x < film.x0 || g.y < film.y0 || g.x >= film.x1 || g.y >= film.y1;
+            });
+            for (MergedPixel& g : part) g.factor /= 1 + static_cast<double>(more(g.x, g.y));
+        }
+        Gathered others = inRows(film, [&](MergeTracer<E>& tracer, PixelBounds rows, std::vector<MergedPixel>& to) {
+            tracer.gatherMore(round, rows, photons, more, to);
+        });
+        std::ranges::move(others, std::back_inserter(all));
+    }
+
+    // How bright pixels are by their first paths, whose light lies side by side, one light after the other.
+    void look(const MergeRound& round, PixelBounds seen, const Gathered& first) {
+        around_.start(seen);
+        for (const std::vector<MergedPixel>& part : first)
+            for (std::size_t i = 0; i < part.size();) {
+                const MergedPixel& pixel = part[i];
+                double luminance = 0;
+                for (; i < part.size() && part[i].x == pixel.x && part[i].y == pixel.y; ++i)
+                    luminance += context_.scene.sensor(part[i].sum.radiance, round.lambda).y * part[i].factor;
+                if (luminance != 0) around_.add(pixel.x, pixel.y, static_cast<float>(std::abs(luminance)));
             }
     }
-    std::uint32_t more(int x, int y) { return plan_.moreBeside(around_.of(x, y)); }
 
-    bool left() const { return media_.left() || result_.counters.left || context_.toldToStop(); }
-
-    std::vector<Photon> trace(int replicate, std::uint32_t number) {
-        std::vector<Photon> photons;
-        std::uint64_t startedAs = ~std::uint64_t{0};
-        for (std::uint32_t j = 0; j < plan_.photons && !left(); ++j) {
-            const std::uint64_t path = std::uint64_t{number} * plan_.photons + j;
-            if (path >> 32 != startedAs) { // sequences have 2^32 points
-                startedAs = path >> 32;
-                sampler_.startPixel(combine64(key(kPhoton, replicate), startedAs), Technique::Numbers::sobol, true);
-            }
-            sampler_.start(static_cast<std::uint32_t>(path));
-            traceOne(photons);
-        }
-        return photons;
-    }
-
-    void traceOne(std::vector<Photon>& photons) {
-        const Scene& scene = context_.scene;
-        const auto start = startOfLightPath(plan_.emission, sampler_, lambda_, scene.camera->rayTime(time_));
-        if (!start) return;
-        if (listener_) listener_->starts(*start);
-        if (!plan_.lights.contains(start->light) || isShaded(scene, *start)) return;
-        PhotonPath<E> path(context_, sampler_, arena_, vertexArenas_, result_.counters, media_);
-        path.walk().startIn(surroundingsOf(scene, *start));
-        path.leavePhotons(*start, lambda_, [&](Photon photon) {
-            photon.flux *= 1 / static_cast<float>(plan_.photons);
-            photons.push_back(photon);
+    // Calls body(tracer, rows, what it is to add to) for all rows of the pixels, shared out.
+    template <typename Body> Gathered inRows(PixelBounds pixels, Body&& body) {
+        const int each = listener_ ? pixels.height() : std::max(1, kPixelsOfPart / pixels.width());
+        Gathered parts(static_cast<std::size_t>((pixels.height() + each - 1) / each));
+        share(parts.size(), [&](MergeTracer<E>& tracer, std::size_t i) {
+            const int y0 = pixels.y0 + static_cast<int>(i) * each;
+            body(tracer, PixelBounds{pixels.x0, y0, pixels.x1, std::min(pixels.y1, y0 + each)}, parts[i]);
         });
-        removeWorkFlag(WorkFlag::heroOnly);
+        return parts;
     }
 
-    // By the camera path of this number of a pixel's, which counts for a share of them; luminance that it found.
-    double gather(const SampleId& id, std::uint64_t key, double share, const PhotonMaps& photons) {
-        const auto [x, y, replicate, number] = id;
-        const auto place =
-            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
-        sampler_.startPixel(combine64(key, place), Technique::Numbers::sobol, true);
-        sampler_.start(number);
-        const FilterSample filter = film_.filter(sampler_.film());
-        const CameraSample at{
-            {static_cast<float>(x) + 0.5f + filter.offset.x, static_cast<float>(y) + 0.5f + filter.offset.y},
-            sampler_.lens(),
-            time_,
-            lambda_.nm[0]};
-        const CameraRay camera = context_.scene.camera->ray(at);
-        if (listener_) listener_->begins(x, y);
-        if (!(camera.weight > 0)) return 0;
-        const std::uint64_t before = raysOf(result_.counters);
-        GatherPath<E> path(context_, sampler_, arena_, result_.counters, media_);
-        startFromCamera(path.walk(), at, camera, surroundings_);
-        const auto factor = static_cast<double>(camera.weight * filter.weight);
-        sums_.clear();
-        path.gather(camera.ray, lambda_, camera.heroOnly, photons, radius_, [&](const GatheredLight& light) {
-            if (listener_) tell(light, factor);
-            Sum& sum = sumOf(light.photon.light);
-            sum.radiance += light.value;
-            sum.closer += light.value * light.closer;
+    template <typename Body> void share(std::size_t parts, Body&& body) {
+        shared_.run(parts, [&](std::size_t i) {
+            std::unique_ptr<MergeTracer<E>> tracer =
+                tracers_.take([&] { return std::make_unique<MergeTracer<E>>(context_, film_, job_, listener_); });
+            body(*tracer, i);
+            tracers_.giveBack(std::move(tracer));
         });
-        removeWorkFlag(WorkFlag::heroOnly);
-        if (listener_) listener_->ends(raysOf(result_.counters) - before);
-        double luminance = 0;
-        for (const Sum& sum : sums_) {
-            gathered_.push_back({x, y, factor * share, sum});
-            luminance += context_.scene.sensor(sum.radiance, lambda_).y * factor;
+    }
+
+    // Of all tracers, and whether anything was left.
+    PathCounters takeCounters() {
+        PathCounters sum;
+        for (const auto& tracer : tracers_.all()) {
+            left_ |= tracer->left();
+            sum.add(tracer->takeCounters());
         }
-        return luminance;
+        return sum;
     }
 
-    // Of one light, for light groups.
-    struct Sum {
-        const Light* light = nullptr;
-        Spectrum radiance{0.f}, closer{0.f};
-    };
-    Sum& sumOf(const Light* light) {
-        for (Sum& sum : sums_)
-            if (sum.light == light) return sum;
-        return sums_.emplace_back(Sum{light});
-    }
-
-    void tell(const GatheredLight& light, double factor) const {
-        const double found = context_.scene.sensor(light.value, lambda_).y * factor;
-        const double odds = static_cast<double>(light.photon.cameraOdds) * static_cast<double>(light.cameraPdf);
-        const double one = found * plan_.photons / static_cast<double>(light.kernel); // by a single light path
-        listener_->gathers(light.photon, found, odds > 0 ? one / odds : 0);
-    }
-
-    // What a pixel is to have of the round.
-    struct Gathered {
-        int x = 0, y = 0;
-        double factor = 0;
-        Sum sum;
-    };
-    void add(const Gathered& gathered, int replicate, std::uint32_t number) {
+    void add(const MergedPixel& gathered, const MergeRound& round) {
         const auto& [x, y, factor, sum] = gathered;
-        const SampleId sample{x, y, replicate, number * plan_.every};
-        const Xyz value = context_.scene.sensor(sum.radiance, lambda_) * factor;
-        const double closer = context_.scene.sensor(sum.closer, lambda_).y * factor;
+        const SampleId sample{x, y, round.replicate, round.number * plan_.every};
+        const Xyz value = context_.scene.sensor(sum.radiance, round.lambda) * factor;
+        const double closer = context_.scene.sensor(sum.closer, round.lambda).y * factor;
         const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z) + std::abs(closer);
         if (!(size < ExactSum::kLargest)) [[unlikely]]
             return result_.drop({sample, std::isnan(size) ? DropCause::nan : DropCause::infinite});
         film_.splat(
             sample.x, sample.y, sample.replicate,
-            {value, sum.radiance, lambda_, factor, sum.light, PathComponent::caustic, SplatKind::merged, closer});
+            {value, sum.radiance, round.lambda, factor, sum.light, PathComponent::caustic, SplatKind::merged, closer});
         ++result_.splats;
     }
 
@@ -265,17 +407,10 @@ template <EffectBits E> class MergeKernel {
     Film& film_;
     const MergeJob& job_;
     MergeListener* const listener_;
-    Sampler sampler_;
-    Arena arena_;
-    VertexArenas vertexArenas_;
-    CameraSurroundings surroundings_;
-    typename PathWalk<E>::Media media_;
-    std::vector<Sum> sums_;          // of this pixel
-    std::vector<Gathered> gathered_; // of the round
-    BrightnessAround around_;        // likewise
-    Wavelengths lambda_;             // of the round
-    float time_ = 0;                 // likewise, as CameraSample::time
-    float radius_ = 0;               // likewise, over that of cones
+    SharedWork shared_;
+    ToolPool<MergeTracer<E>> tracers_;
+    BrightnessAround around_; // of the round
+    bool left_ = false;       // something, since the render is to end
     TileResult result_;
 };
 

@@ -48,6 +48,7 @@ struct TileResult {
     // Of all rays that counters tell: of light paths after they were spread, and of those for merging.
     std::uint64_t raysAfterSpread = 0, photonRays = 0;
     std::uint64_t photons = 0; // that these left
+    double secondsElsewhere = 0; // of processors, of other threads that took part
     // Nothing unless it was told to stop: the rest of the job.
     std::optional<PortionPlace> rest;
 
@@ -67,6 +68,7 @@ struct TileResult {
         raysAfterSpread += r.raysAfterSpread;
         photonRays += r.photonRays;
         photons += r.photons;
+        secondsElsewhere += r.secondsElsewhere;
         if (r.rest) rest = r.rest;
     }
 };
