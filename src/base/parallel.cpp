@@ -68,6 +68,19 @@ void parallelParts(std::size_t count, const std::function<void(std::size_t)>& bo
 #else
 
 namespace {
+
+// A caller that takes part in a loop, and in that of an arena, has its own control register again behind it.
+class KeptControl {
+  public:
+    KeptControl() = default;
+    ~KeptControl() { _mm_setcsr(before_); }
+    KeptControl(const KeptControl&) = delete;
+    KeptControl& operator=(const KeptControl&) = delete;
+
+  private:
+    unsigned before_ = _mm_getcsr();
+};
+
 void loop(std::size_t count, const std::function<void(std::size_t)>& body) {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
@@ -78,10 +91,12 @@ void loop(std::size_t count, const std::function<void(std::size_t)>& body) {
         },
         tbb::simple_partitioner{});
 }
+
 } // namespace
 
 // Where nothing else is said, TBB has no more threads at a loop than there are cores.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    const KeptControl kept;
     if (tbb::this_task_arena::max_concurrency() >= threadCount()) return loop(count, body);
     tbb::task_arena arena(threadCount());
     arena.execute([&] { loop(count, body); });
@@ -89,6 +104,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
 
 void parallelParts(std::size_t count, const std::function<void(std::size_t)>& body) {
     if (count == 1) return body(0);
+    const KeptControl kept;
     tbb::this_task_arena::isolate([&] { loop(count, body); });
 }
 #endif

@@ -18,6 +18,17 @@ inline bool sameBits(const RecordingFilm& a, const RecordingFilm& b) {
     return true;
 }
 
+// Of what light paths and rounds brought, added to the rest; of two replicates.
+inline bool sameLight(const RecordingFilm& a, const RecordingFilm& b) {
+    const PixelFilm &s = a.pixelFilm(), &t = b.pixelFilm();
+    const PixelBounds bounds = s.bounds();
+    for (int y = bounds.y0; y < bounds.y1; ++y)
+        for (int x = bounds.x0; x < bounds.x1; ++x)
+            if (s.mean(x, y).x != t.mean(x, y).x || s.mean(x, y).y != t.mean(x, y).y) return false;
+    return s.lightPaths() == t.lightPaths() &&
+           s.splatCount(SplatKind::merged, 0, 2) == t.splatCount(SplatKind::merged, 0, 2);
+}
+
 inline bool sameCounts(const RenderStatistics& a, const RenderStatistics& b) {
     return a.paths == b.paths && a.vertices == b.vertices && a.shadowRays == b.shadowRays;
 }

@@ -89,17 +89,6 @@ Pieces renderInPieces(const TestScene& scene, const RenderSettings& settings, st
     return p;
 }
 
-// With what light paths brought.
-bool sameLight(const RecordingFilm& a, const RecordingFilm& b) {
-    const PixelFilm &s = a.pixelFilm(), &t = b.pixelFilm();
-    const PixelBounds bounds = s.bounds();
-    for (int y = bounds.y0; y < bounds.y1; ++y)
-        for (int x = bounds.x0; x < bounds.x1; ++x)
-            if (s.mean(x, y).x != t.mean(x, y).x || s.mean(x, y).y != t.mean(x, y).y) return false;
-    return s.lightPaths() == t.lightPaths() &&
-           s.splatCount(SplatKind::merged, 0, 2) == t.splatCount(SplatKind::merged, 0, 2);
-}
-
 } // namespace
 
 TEST_CASE("a render cut within pixels and paths goes on to the bits of one that was not") {
