@@ -11,6 +11,7 @@
 #include "render/scene.h"
 #include "rendering/look_ahead.h"
 #include "rendering/render_plans.h"
+#include "rendering/shared_tile.h"
 #include "rendering/time_left.h"
 
 #include <algorithm>
@@ -170,6 +171,7 @@ class RenderJob {
             std::ranges::stable_partition(open, [this](std::size_t i) { return state_.isLightBlock(i); });
         std::ranges::stable_sort(tiles, std::greater(),
                                  [this](std::size_t i) { return state_.tile(i).tally.coreSeconds; });
+        dear_ = leastOfDear();
         bool goesOn = true; // else what is left of the pass would end after the time limit
         do {
             advanced_ = false;
@@ -225,8 +227,19 @@ class RenderJob {
             return plans_.caustics.render(context_, kernel_.lightPaths, film_,
                                           {first, portion.end, static_cast<std::uint32_t>(state_.lightBlock(i)),
                                            static_cast<std::uint32_t>(state_.lightBlockCount()), portion.at});
-        return render_(context_, film_,
-                       {state_.pixels(i), first, portion.end, &plans_.ahead.roulette, samplePlan(), portion.at});
+        const TileJob job{state_.pixels(i), first, portion.end, &plans_.ahead.roulette, samplePlan(), portion.at};
+        return isDear(i) ? renderShared(render_, context_, film_, job) : render_(context_, film_, job);
+    }
+
+    // Whether a tile takes so much of a pass that threads would wait for it at the end.
+    bool isDear(std::size_t i) const { return dear_ > 0 && state_.tile(i).tally.coreSeconds > dear_; }
+    // Core seconds so far from which on a tile is dear; 0: none is. With two threads few are.
+    double leastOfDear() const {
+        constexpr double kPerThread = 4;
+        if (threadCount() < 2 || hasRecorders_) return 0;
+        double all = 0;
+        for (std::size_t i = 0; i < state_.tileCount(); ++i) all += state_.tile(i).tally.coreSeconds;
+        return all / (kPerThread * threadCount());
     }
 
     const SamplingPlan* samplePlan() const { return plans_.ahead.plan.even() ? nullptr : &plans_.ahead.plan; }
@@ -310,6 +323,8 @@ class RenderJob {
     std::optional<RenderState> ownState_; // unless the caller has one
     RenderState& state_;
     std::uint32_t pass_ = 0;
+    const bool hasRecorders_ = film_.makeRecorder() != nullptr;
+    double dear_ = 0; // leastOfDear() of this pass
     RenderStatistics statistics_;
     std::optional<TimeLeft> timeLeft_; // from the first sample on
     std::int64_t pixelSamples_ = 0;    // of each replicate, in all pixels, as if they were even

@@ -1,10 +1,12 @@
 // Renders that are ended in the middle of a tile, a path, a block of light paths or a round of merging: soon, and to go
 // on to the bits of one that was not.
+#include "base/parallel.h"
 #include "render/render_state.h"
 #include "support/forwarding_film.h"
 #include "support/same_bits.h"
 #include "support/scene_test.h"
 
+#include <atomic>
 #include <chrono>
 #include <doctest/doctest.h>
 #include <thread>
@@ -40,29 +42,52 @@ light sky { radiance 1 }
 shape sphere { radius 1; material boundary; interior homogeneous { extinction 3000 per-m; albedo 0.99999 } }
 )";
 
-// Asks for the end after so many additions and splats, and is given time to be heard.
-class EndingFilm final : public ForwardingFilm {
+// Asks for the end after so many events, and is given time to be heard.
+class Ending {
   public:
-    EndingFilm(RecordingFilm& film, std::atomic<bool>& stop, std::uint64_t additions)
-        : ForwardingFilm(film), stop_(stop), last_(additions) {}
-    void add(int x, int y, int r, const ExactXyz& sum, std::uint32_t n) noexcept override {
-        ForwardingFilm::add(x, y, r, sum, n);
-        count();
-    }
-    void splat(int x, int y, int r, const Splat& splat) noexcept override {
-        ForwardingFilm::splat(x, y, r, splat);
-        count();
-    }
-
-  private:
+    Ending(std::atomic<bool>& stop, std::uint64_t events) : stop_(stop), last_(events) {}
     void count() {
-        if (++added_ != last_) return;
+        if (++counted_ != last_) return;
         stop_ = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(last_ % 3 * 6)); // the watch looks every 5 ms
     }
+
+  private:
     std::atomic<bool>& stop_;
     std::uint64_t last_;
-    std::atomic<std::uint64_t> added_{0};
+    std::atomic<std::uint64_t> counted_{0};
+};
+
+// After additions and splats.
+class EndingFilm final : public ForwardingFilm {
+  public:
+    EndingFilm(RecordingFilm& film, std::atomic<bool>& stop, std::uint64_t additions)
+        : ForwardingFilm(film), ending_(stop, additions) {}
+    void add(int x, int y, int r, const ExactXyz& sum, std::uint32_t n) noexcept override {
+        ForwardingFilm::add(x, y, r, sum, n);
+        ending_.count();
+    }
+    void splat(int x, int y, int r, const Splat& splat) noexcept override {
+        ForwardingFilm::splat(x, y, r, splat);
+        ending_.count();
+    }
+
+  private:
+    Ending ending_;
+};
+
+// When so many samples have begun: what several threads do is added when all of it is done.
+class SampleEndingFilm final : public ForwardingFilm {
+  public:
+    SampleEndingFilm(RecordingFilm& film, std::atomic<bool>& stop, std::uint64_t samples)
+        : ForwardingFilm(film), ending_(stop, samples) {}
+    FilterSample filter(Vec2 u) const noexcept override {
+        ending_.count();
+        return ForwardingFilm::filter(u);
+    }
+
+  private:
+    mutable Ending ending_;
 };
 
 struct Pieces {
@@ -70,15 +95,16 @@ struct Pieces {
     int runs = 0, cutTiles = 0, cutBlocks = 0;
 };
 
-// Ended after so many additions again and again, each time after as many more.
-Pieces renderInPieces(const TestScene& scene, const RenderSettings& settings, std::uint64_t additions) {
+// Ended after so many events again and again, each time after as many more.
+template <typename Film>
+Pieces renderInPieces(const TestScene& scene, const RenderSettings& settings, std::uint64_t events) {
     const auto tracer = makePathTracer(scene.scene().effects);
     Pieces p{{RecordingFilm(scene.built().film, 2), {}}};
     p.image.film.keepSplatsOf(*tracer, scene.scene(), settings);
     RenderState state(p.image.film.bounds(), 0, tracer->lightBlocks(scene.scene(), settings));
     while (state.reached() < settings.samplesPerReplicate(2) && ++p.runs < 500) {
         std::atomic<bool> stop = false;
-        EndingFilm film(p.image.film, stop, 1 + additions * static_cast<std::uint64_t>(p.runs));
+        Film film(p.image.film, stop, 1 + events * static_cast<std::uint64_t>(p.runs));
         p.image.statistics = tracer->render(scene.scene(), film, settings, {&stop, {}, &state});
         for (std::size_t i = 0; i < state.tileCount(); ++i) {
             if (!state.tile(i).cut) continue;
@@ -97,14 +123,20 @@ TEST_CASE("a render cut within pixels and paths goes on to the bits of one that 
         REQUIRE(scene.report() == "");
         RenderSettings settings = scene.settings();
         settings.samples = 32;
-        const TestImage whole = render(scene, settings, {}, 2);
-        const Pieces pieces = renderInPieces(scene, settings, 1);
         CAPTURE(text);
-        CHECK(pieces.cutTiles > 3);
-        if (text == kWhiteRoom) // paths that were left, and taken again
-            CHECK(pieces.image.statistics.vertices > whole.statistics.vertices);
-        CHECK(sameBits(whole.film, pieces.image.film));
-        CHECK(whole.statistics.paths == pieces.image.statistics.paths);
+        setThreadCount(1);
+        const TestImage whole = render(scene, settings, {}, 2);
+        const Pieces ofOne = renderInPieces<EndingFilm>(scene, settings, 1);
+        setThreadCount(4);
+        const Pieces ofMany = renderInPieces<SampleEndingFilm>(scene, settings, 10);
+        setThreadCount(0);
+        for (const Pieces* pieces : {&ofOne, &ofMany}) {
+            CHECK(pieces->cutTiles > 3);
+            if (text == kWhiteRoom) // paths that were left, and taken again
+                CHECK(pieces->image.statistics.vertices > whole.statistics.vertices);
+            CHECK(sameBits(whole.film, pieces->image.film));
+            CHECK(whole.statistics.paths == pieces->image.statistics.paths);
+        }
     }
 }
 
@@ -116,7 +148,7 @@ TEST_CASE("light paths and rounds of merging that are cut go on to the same bits
     settings.pilot = 1;
     const TestImage whole = renderAsProgram(scene, settings, 2);
     REQUIRE(whole.statistics.rounds > 0);
-    const Pieces pieces = renderInPieces(scene, settings, 200);
+    const Pieces pieces = renderInPieces<EndingFilm>(scene, settings, 200);
     CHECK(pieces.cutBlocks > 0);
     CHECK(sameBits(whole.film, pieces.image.film));
     CHECK(sameLight(whole.film, pieces.image.film));

@@ -1,4 +1,5 @@
-// Idle threads take part in a block of light paths and in a round of merging: a single block keeps all of them at work.
+// Idle threads take part in a block of light paths, in a round of merging and in a dear tile: a single one of these
+// keeps all of them at work.
 #include "base/parallel.h"
 #include "base/work.h"
 #include "render/render_state.h"
@@ -6,6 +7,7 @@
 #include "support/same_bits.h"
 #include "support/scene_test.h"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <doctest/doctest.h>
@@ -69,6 +71,28 @@ class MeetingFilm final : public ForwardingFilm {
     static bool isAtLight() { return (workState.flags.load() & static_cast<std::uint8_t>(WorkFlag::light)) != 0; }
 };
 
+// One tile.
+const char* const kBallOnFloor = R"(scene 1
+film { size 16 16 }
+camera { from 0 2 4; look-at 0 0.3 0; fov 45 deg }
+shape plane { material diffuse { reflectance 0.7 } }
+shape sphere { center 0 0.7 0; radius 0.6; material diffuse { reflectance 0.4 } }
+light sky { luminance 200 nits }
+)";
+
+// Samples of pixels ask it for their places; from when it is told on.
+class PixelMeetingFilm final : public ForwardingFilm {
+  public:
+    PixelMeetingFilm(RecordingFilm& film, std::size_t threads) : ForwardingFilm(film), samples(threads) {}
+    FilterSample filter(Vec2 u) const noexcept override {
+        if (begun && (workState.flags.load() & static_cast<std::uint8_t>(WorkFlag::pilot)) == 0) samples.arrive();
+        return ForwardingFilm::filter(u);
+    }
+
+    mutable Rendezvous samples;
+    std::atomic<bool> begun = false;
+};
+
 RenderSettings fewSamples(const TestScene& scene) {
     RenderSettings settings = scene.settings();
     settings.samples = 8;
@@ -104,6 +128,27 @@ TEST_CASE("one block of light paths, and one round of merging, is the work of al
     CHECK(alone.statistics.lightRays == image.statistics.lightRays);
     CHECK(alone.statistics.splats == image.statistics.splats);
     CHECK(alone.statistics.rounds == image.statistics.rounds);
+}
+
+TEST_CASE("a tile that is most of the work is that of all threads, but for its first samples") {
+    constexpr std::size_t kThreads = 4;
+    const auto scene = TestScene::parse(kBallOnFloor);
+    REQUIRE(scene.report() == "");
+    RenderSettings settings = scene.settings();
+    settings.samples = 64;
+    setThreadCount(1);
+    const TestImage alone = render(scene, settings, {}, 2);
+
+    setThreadCount(static_cast<int>(kThreads));
+    TestImage image{RecordingFilm(scene.built().film, 2), {}};
+    PixelMeetingFilm film(image.film, kThreads);
+    RenderControl control;
+    control.passEnded = [&] { film.begun = true; };
+    image.statistics = makePathTracer(scene.scene().effects)->render(scene.scene(), film, settings, control);
+    setThreadCount(0);
+    CHECK(film.samples.met() == kThreads);
+    CHECK(sameBits(alone.film, image.film));
+    CHECK(sameCounts(alone.statistics, image.statistics));
 }
 
 } // namespace abbe::test
