@@ -59,6 +59,18 @@ BilinearWarp warp(const TensorFile& file, std::string_view name, const std::vect
     return BilinearWarp(std::move(values), rows, columns);
 }
 
+// How often the azimuths of the incoming light make a circle: they are all of it, or the half or quarter that begins at
+// -180 degrees, and other directions are turned or mirrored into these [Dupuy2018].
+int repeatsOf(const TensorFile& file, const std::vector<float>& phi) {
+    constexpr double kPi = std::numbers::pi, kRounding = 0.02;
+    const double first = phi.front(), span = double(phi.back()) - first;
+    for (const int repeats : {1, 2, 4})
+        if (std::abs(span * repeats - 2 * kPi) < kRounding && std::abs(first + kPi) < kRounding) return repeats;
+    failMeasured(file, fmt::format("`phi_i` goes from {:.4g} to {:.4g} degrees, where -180 to 180, to 0 or to -90 is "
+                                   "what can be read",
+                                   first * 180 / kPi, (first + span) * 180 / kPi));
+}
+
 } // namespace
 
 MeasuredTables readMeasured(const std::string& path) {
@@ -69,6 +81,8 @@ MeasuredTables readMeasured(const std::string& path) {
                      "`_spec.bsdf`");
     MeasuredTables t;
     t.phi = axis(file, "phi_i");
+    t.isotropic = t.phi.size() <= 2;
+    if (!t.isotropic) t.repeats = repeatsOf(file, t.phi);
     t.theta = axis(file, "theta_i");
     t.wavelengths = axis(file, "wavelengths");
     t.facets = grid(file, "ndf");
@@ -92,9 +106,6 @@ MeasuredTables readMeasured(const std::string& path) {
     }
     const Tensor& jacobian = file["jacobian"];
     t.scalesByFacets = !jacobian.bytes.empty() && jacobian.bytes.front() != 0;
-    t.isotropic = t.phi.size() <= 2;
-    if (!t.isotropic)
-        t.repeats = static_cast<int>(std::lround(2 * std::numbers::pi / double(t.phi.back() - t.phi.front())));
     return t;
 }
 

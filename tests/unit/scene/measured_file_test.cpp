@@ -4,9 +4,15 @@
 #include "scene/material_builder.h"
 #include "scene_test_fixture.h"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <numbers>
+#include <string>
+#include <string_view>
 #include <unistd.h>
 
 using namespace abbe;
@@ -35,6 +41,21 @@ struct BsdfFile {
 
 std::string replaced(std::string bytes, std::string_view from, std::string_view to) {
     return bytes.replace(bytes.find(from), from.size(), to);
+}
+
+// With three azimuths in place of one: the field's entry says so and where they are, which is at the end.
+std::string withAzimuths(std::string bytes, std::array<float, 3> degrees) {
+    const auto put = [&bytes](std::size_t place, std::uint64_t value) {
+        for (std::size_t i = 0; i < 8; ++i) bytes[place + i] = static_cast<char>(value >> (8 * i));
+    };
+    const std::size_t entry = bytes.find("phi_i") + 5; // dimensions: 2 bytes, type: 1, offset and size: 8 each
+    put(entry + 3, bytes.size());
+    put(entry + 11, degrees.size());
+    for (const float d : degrees) {
+        const float radians = d * std::numbers::pi_v<float> / 180;
+        bytes.append(reinterpret_cast<const char*>(&radians), sizeof radians);
+    }
+    return bytes;
 }
 
 } // namespace
@@ -68,6 +89,18 @@ TEST_CASE("measured files: what is wrong is said" * doctest::test_suite("input")
                        place, 8, std::string(angles.bytes.substr(8, 4)) + std::string(angles.bytes.substr(4, 4))))
               .says("`theta_i` does not increase"));
     CHECK(BsdfFile(std::string(sound).replace(place, 4, "\xff\xff\xff\x7f")).says("not finite"));
+}
+
+TEST_CASE("measured files: azimuths are a circle, or the half or quarter of it to which the rest is turned") {
+    const std::string sound = readFileBytes(kSmall);
+    const auto says = [&sound](std::array<float, 3> degrees, std::string_view words) {
+        return BsdfFile(withAzimuths(sound, degrees)).says(words);
+    };
+    for (const float last : {180.f, 0.f, -90.f}) // these are read, and the tables are then too few
+        CHECK(says({-180, (last - 180) / 2, last}, "the size of `vndf` is not that of its angles"));
+    CHECK(says({-180, -120, -60}, "`phi_i` goes from -180 to -60 degrees"));
+    CHECK(says({0, 90, 180}, "`phi_i` goes from 0 to 180 degrees"));
+    CHECK(says({-180, -90, 90}, "`phi_i` goes from -180 to 90 degrees"));
 }
 
 TEST_CASE("measured files: faults have a place in the scene, and whole ones scatter" * doctest::test_suite("input")) {
