@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 #endif
+#include <algorithm>
 #include <memory>
 #include <pmmintrin.h>
 #include <tbb/global_control.h>
@@ -94,11 +95,14 @@ void loop(std::size_t count, const std::function<void(std::size_t)>& body) {
 
 } // namespace
 
-// Where nothing else is said, TBB has no more threads at a loop than there are cores.
+// Where nothing else is said, TBB has no more threads at a loop than there are cores. Thousands of them on a few cores
+// would do nothing but look for work.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    constexpr int kMostOfCore = 32;
     const KeptControl kept;
-    if (tbb::this_task_arena::max_concurrency() >= threadCount()) return loop(count, body);
-    tbb::task_arena arena(threadCount());
+    const int most = std::min(threadCount(), kMostOfCore * tbb::info::default_concurrency());
+    if (tbb::this_task_arena::max_concurrency() >= most) return loop(count, body);
+    tbb::task_arena arena(most);
     arena.execute([&] { loop(count, body); });
 }
 

@@ -8,8 +8,8 @@
 
 namespace abbe {
 
-// All loops of the process are run by so many workers (0: one per core), be there more cores or fewer. Call once,
-// before the first loop.
+// All loops of the process are run by so many workers (0: one per core), be there as many cores or not, up to 32 for
+// each core. Call once, before the first loop.
 void setThreadCount(int threads);
 int threadCount();
 

@@ -47,7 +47,7 @@ struct TileResult {
     std::uint64_t lightPaths = 0, splats = 0, rounds = 0; // as in PathTally
     // Of all rays that counters tell: of light paths after they were spread, and of those for merging.
     std::uint64_t raysAfterSpread = 0, photonRays = 0;
-    std::uint64_t photons = 0; // that these left
+    std::uint64_t photons = 0;   // that these left
     double secondsElsewhere = 0; // of processors, of other threads that took part
     // Nothing unless it was told to stop: the rest of the job.
     std::optional<PortionPlace> rest;
