@@ -64,7 +64,7 @@ TEST_CASE("parallel loop: as many threads as it was told, be there as many cores
         std::unique_lock lock(mutex);
         ++inside;
         changed.notify_all();
-        if (!changed.wait_for(lock, std::chrono::seconds(10), [&] { return inside == kThreads || late; })) late = true;
+        if (!changed.wait_for(lock, std::chrono::seconds(60), [&] { return inside == kThreads || late; })) late = true;
         changed.notify_all();
     });
     setThreadCount(0);

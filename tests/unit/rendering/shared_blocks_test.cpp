@@ -29,7 +29,7 @@ light sphere { center 1 3 0.5; radius 3 cm; power 800 lm }
 light sky { luminance 2 nits }
 )";
 
-// Holds every thread that comes until so many different ones are there; for some seconds, but once.
+// Holds every thread that comes until so many different ones are there; for a minute, but once.
 class Rendezvous {
   public:
     explicit Rendezvous(std::size_t wanted) : wanted_(wanted) {}
@@ -38,7 +38,7 @@ class Rendezvous {
         if (met_.size() >= wanted_ || gaveUp_) return;
         met_.insert(std::this_thread::get_id());
         changed_.notify_all();
-        if (!changed_.wait_for(lock, std::chrono::seconds(10), [this] { return met_.size() >= wanted_ || gaveUp_; }))
+        if (!changed_.wait_for(lock, std::chrono::seconds(60), [this] { return met_.size() >= wanted_ || gaveUp_; }))
             gaveUp_ = true;
         changed_.notify_all();
     }
