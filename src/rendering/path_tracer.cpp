@@ -236,7 +236,7 @@ class RenderJob {
     // Core seconds so far from which on a tile is dear; 0: none is. With two threads few are.
     double leastOfDear() const {
         constexpr double kPerThread = 4;
-        if (threadCount() < 2 || hasRecorders_) return 0;
+        if (threadCount() < 2 || film_.makeRecorder()) return 0; // recorders see a tile's samples in their order
         double all = 0;
         for (std::size_t i = 0; i < state_.tileCount(); ++i) all += state_.tile(i).tally.coreSeconds;
         return all / (kPerThread * threadCount());
@@ -323,7 +323,6 @@ class RenderJob {
     std::optional<RenderState> ownState_; // unless the caller has one
     RenderState& state_;
     std::uint32_t pass_ = 0;
-    const bool hasRecorders_ = film_.makeRecorder() != nullptr;
     double dear_ = 0; // leastOfDear() of this pass
     RenderStatistics statistics_;
     std::optional<TimeLeft> timeLeft_; // from the first sample on
