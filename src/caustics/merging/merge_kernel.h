@@ -97,27 +97,21 @@ template <EffectBits E> class MergeTracer {
         }
     }
 
-    // What camera paths find in the pixels of the rows [y0, y1), here and below, unless they are told to stop. Of a
-    // part of the pixels, others in each round, spread evenly [Roberts2018]; the first is in the middle.
-    void gatherSome(const MergeRound& round, int y0, int y1, const PhotonMaps& photons,
-                    std::vector<MergedPixel>& gathered) {
-        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
+    // What camera paths find in the pixels, here and below, unless they are told to stop; by one path for each. Of a
+    // part of the pixels, if the job says so, others in each round, spread evenly [Roberts2018]; the first is in the
+    // middle.
+    void gatherFirst(const MergeRound& round, PixelBounds pixels, const PhotonMaps& photons,
+                     std::vector<MergedPixel>& gathered) {
+        const PixelBounds frame = context_.scene.frame;
         const auto phase = [&](double golden) {
             const double place = 0.5 + round.number * golden;
             return static_cast<int>((place - std::floor(place)) * job_.step);
         };
         const int px = phase(0.7548776662466927), py = phase(0.5698402909980532);
-        for (int y = y0; y < y1 && !left(); ++y)
+        for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
             for (int x = pixels.x0; x < pixels.x1; ++x)
                 if ((x - frame.x0) % job_.step == px && (y - frame.y0) % job_.step == py)
                     gather(round, {x, y, round.number, kGather, 1}, photons, gathered);
-    }
-    // By one path for every pixel.
-    void gatherFirst(const MergeRound& round, PixelBounds pixels, const PhotonMaps& photons,
-                     std::vector<MergedPixel>& gathered) {
-        for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
-            for (int x = pixels.x0; x < pixels.x1; ++x)
-                gather(round, {x, y, round.number, kGather, 1}, photons, gathered);
     }
     // By as many more as more(x, y) says.
     template <typename More>
@@ -309,20 +303,16 @@ template <EffectBits E> class MergeKernel {
     }
 
     Gathered gather(const MergeRound& round, const PhotonMaps& photons) {
-        const PixelBounds film = film_.bounds();
-        if (job_.step > 1)
-            return inRows(film, [&](MergeTracer<E>& tracer, PixelBounds rows, std::vector<MergedPixel>& to) {
-                tracer.gatherSome(round, rows.y0, rows.y1, photons, to);
-            });
         // Pixels of the frame near the film tell of theirs.
-        const PixelBounds frame = context_.scene.frame;
-        const int near = plan_.more > 0 ? BrightnessAround::kReach : 0;
+        const PixelBounds frame = context_.scene.frame, film = film_.bounds();
+        const bool takesMore = plan_.more > 0 && job_.step == 1;
+        const int near = takesMore ? BrightnessAround::kReach : 0;
         const PixelBounds seen{std::max(frame.x0, film.x0 - near), std::max(frame.y0, film.y0 - near),
                                std::min(frame.x1, film.x1 + near), std::min(frame.y1, film.y1 + near)};
         Gathered all = inRows(seen, [&](MergeTracer<E>& tracer, PixelBounds rows, std::vector<MergedPixel>& to) {
             tracer.gatherFirst(round, rows, photons, to);
         });
-        if (plan_.more > 0) gatherMore(round, seen, photons, all);
+        if (takesMore) gatherMore(round, seen, photons, all);
         return all;
     }
 
