@@ -55,6 +55,13 @@ class Figures(unittest.TestCase):
             self.assertTrue(1 / 1.42 < (besides + samples * each) / 4 < 1.42, (besides, each, samples))
         self.assertEqual(figures.samples_for(Priced(5, 1), 4), 1)
 
+    def test_samples_are_not_taken_for_what_begins_with_some_number_of_them(self):
+        class Learning(Priced):
+            def render(self, samples, _seed):
+                return None, super().render(samples, _seed)[1] + (1.5 if samples >= 16 else 0)
+        samples = figures.samples_for(Learning(0, 0.02), 4)
+        self.assertTrue(1 / 1.42 < (1.5 + samples * 0.02) / 4 < 1.42, samples)
+
     def test_efficiency_is_that_of_the_noise(self):
         value, spread, trimmed = figures.efficiency(figures.errors_between(renders(4, 0.05, 1), WHOLE, even()), [3.0, 5.0, 4.0, 4.0])
         expected = 1 / (relative_error(0.05) * 4)

@@ -81,7 +81,9 @@ def coarse_difference(images, others, blocks=16):
 
 def samples_for(renderer, seconds):
     """A power of two, which Sobol points like best, so that one render takes about as long as that: at most 1.4 times. Two
-    renders tell what a sample costs and what each render costs besides, as pilots do, whose share falls with the samples."""
+    renders tell what a sample costs and what each render costs besides, as pilots do, whose share falls with the samples.
+    Where a renderer does something for the first time between the two, such as learning guides, they make samples seem too
+    dear: so the number is doubled as long as one render with twice as many keeps to the time."""
     before, spent, samples = (0, 0.0), 0.0, 1
     while spent < 0.45 * seconds and samples < 1 << 22:
         before = (samples, spent)
@@ -89,4 +91,7 @@ def samples_for(renderer, seconds):
         _, spent = renderer.render(samples, 1000 + samples)
     each = max((spent - before[1]) / (samples - before[0]), 0.25 * spent / samples) # the difference of two renders is noisy
     besides = max(spent - each * samples, 0)
-    return max(1, 2 ** round(np.log2(max((seconds - besides) / each, 1))))
+    fitting = max(1, 2 ** round(np.log2(max((seconds - besides) / each, 1))))
+    while fitting < 1 << 22 and renderer.render(2 * fitting, 2000 + fitting)[1] <= 1.4 * seconds:
+        fitting *= 2
+    return fitting
