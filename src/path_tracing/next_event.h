@@ -62,7 +62,7 @@ template <EffectBits E> class NextEvent {
     // At the place `p` in a medium, whose phase function has the density `phase` of the light's direction, which
     // scattering there has with `pdf`.
     float weightInMedium(const LightSample& light, const PickedLight& picked, [[maybe_unused]] Vec3 p,
-                         [[maybe_unused]] float phase, float pdf) const {
+                         [[maybe_unused]] float phase, float pdf) {
         if constexpr (kLightPaths)
             if (const auto w = caustics_.lightPaths.neeWeightInMedium(light, picked, p, phase)) return *w;
         BsdfEval eval;
@@ -78,9 +78,9 @@ template <EffectBits E> class NextEvent {
         float weight = 1;      // for not being the only candidate
         float phase, pdf;      // densities of its direction: of the phase function, and its own
     };
-    std::optional<LightInMedium> lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std::uint32_t depth) const;
+    std::optional<LightInMedium> lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std::uint32_t depth);
     std::optional<LightInMedium> chooseInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth,
-                                                RandomStream&) const;
+                                                RandomStream&);
     std::optional<EquiangularDistances> distancesTowards(const Light&) const;
     float trackingShare(const PickedLight&);
     Spectrum scatteredAlongRay(const LightSample&, const PickedLight&, Vec3 p, std::uint32_t depth);
@@ -120,8 +120,7 @@ void NextEvent<E>::atSurface(const SurfaceHit& hit, const Bsdf& bsdf, const EyeD
     const bool through = eye.wo.z * wi.z < 0;
     [[maybe_unused]] Spectrum passing;
     if constexpr (kInterfaces) {
-        passing =
-            walk_.transmittance(origin, *light, {path.nested.after(through), {}}, walk_.sampler.stream(2 * depth + 1));
+        passing = walk_.transmittance(origin, *light, path.nested.after(through), walk_.sampler.stream(2 * depth + 1));
         if (!anyNonZero(passing)) return;
     } else if (walk_.occluded(origin, *light)) {
         return;
@@ -163,8 +162,7 @@ void NextEvent<E>::inMedium(Vec3 p, Vec3 direction, const VertexSample& sample, 
         least = kWorth / std::max(share, kWorth);
     }
     ++walk_.counters.shadowRays;
-    const Spectrum passing =
-        walk_.transmittance(p, chosen->light, {path.nested.here, {}}, random, RayKind::shadow, least);
+    const Spectrum passing = walk_.transmittance(p, chosen->light, path.nested.here, random, RayKind::shadow, least);
     if (!anyNonZero(passing)) return;
     const PickedLight& picked = chosen->picked;
     estimate.add(chosen->contribution * passing * (weight * trackingShare(picked)), picked.light, false, [&] {
@@ -177,7 +175,7 @@ void NextEvent<E>::inMedium(Vec3 p, Vec3 direction, const VertexSample& sample, 
 // is the phase function, of which picking knows nothing [Talbot2005].
 template <EffectBits E>
 auto NextEvent<E>::chooseInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth,
-                                  RandomStream& random) const -> std::optional<LightInMedium> {
+                                  RandomStream& random) -> std::optional<LightInMedium> {
     const int candidates = walk_.context.lights.needsChoice() ? 2 : 1;
     std::optional<LightInMedium> chosen;
     float sum = 0;
@@ -197,7 +195,7 @@ auto NextEvent<E>::chooseInMedium(Vec3 p, Vec3 direction, const VertexSample& sa
 
 // Nothing where no light comes from.
 template <EffectBits E>
-auto NextEvent<E>::lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std::uint32_t depth) const
+auto NextEvent<E>::lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std::uint32_t depth)
     -> std::optional<LightInMedium> {
     const PathContext& context = walk_.context;
     const auto& path = walk_.path;
@@ -258,7 +256,7 @@ void NextEvent<E>::alongRay(const Ray& ray, float tMax, std::uint32_t depth, std
     const Spectrum scattered = scatteredAlongRay(*light, asTracking, p, depth);
     if (!anyNonZero(scattered)) return;
     ++walk_.counters.shadowRays;
-    Spectrum passing = walk_.transmittance(p, *light, {path.nested.here, {}}, walk_.sampler.stream(2 * set + 1));
+    Spectrum passing = walk_.transmittance(p, *light, path.nested.here, walk_.sampler.stream(2 * set + 1));
     if (!anyNonZero(passing)) return;
     RandomStream random = walk_.sampler.stream(2 * set);
     passing *= tracker.transmittance(ray, t, path.nested.here.media(), path.lambda, random);

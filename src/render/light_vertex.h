@@ -34,8 +34,7 @@ struct LightVertexSample {
 class LightVertex {
   public:
     // `hit`: as the intersector made it, before Material::bend(); its arrival is the direction of travel of the light.
-    // Requires Material::reversible().
-    // Both arenas outlive this; `eye` is emptied for every question.
+    // Requires Material::reversible(). All outlive this; `eye` is emptied for every question.
     LightVertex(const SurfaceHit& hit, const Wavelengths& lambda, Arena& own, Arena& eye)
         : hit_(hit), lambda_(lambda), eye_(eye), own_(seenAlong(hit.arrival, own)) {}
 
@@ -110,10 +109,12 @@ class LightVertex {
 
   private:
     View seenAlong(Vec3 arrival, Arena& arena) const {
+        const Material& material = *hit_.material;
+        if (!material.bends() && !material.usesTextures()) return {hit_.shading, material.bsdf(hit_, lambda_, arena)};
         SurfaceHit hit = hit_;
         hit.arrival = arrival;
-        if (hit.material->bends()) hit.material->bend(hit);
-        return {hit.shading, hit.material->bsdf(hit, lambda_, arena)};
+        material.bend(hit);
+        return {hit.shading, material.bsdf(hit, lambda_, arena)};
     }
     // As for camera paths: shading normals neither open a surface nor close it.
     bool sidesAgree(Vec3 a, Vec3 f, Vec3 away) const {
@@ -122,7 +123,7 @@ class LightVertex {
     }
     float projected(Vec3 away) const { return std::abs(dot(away, hit_.ng) / dot(hit_.arrival, hit_.ng)); }
 
-    SurfaceHit hit_;
+    const SurfaceHit& hit_;
     const Wavelengths& lambda_;
     Arena& eye_;
     View own_;

@@ -18,6 +18,15 @@ template <typename T> class EnteredStack {
   public:
     static constexpr int kMax = 16;
 
+    // Paths copy them at every surface, and have mostly entered next to nothing: only that is copied.
+    EnteredStack() {} // NOLINT: what lies beyond the size is never read
+    EnteredStack(const EnteredStack& other) { *this = other; }
+    EnteredStack& operator=(const EnteredStack& other) {
+        size_ = other.size_;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(size_); ++i) entered_[i] = other.entered_[i];
+        return *this;
+    }
+
     int size() const { return size_; }
     const T* operator[](int i) const { return entered_[static_cast<std::size_t>(i)]; }
     bool contains(const T* thing) const { return lastOf(thing) >= 0; }
@@ -41,7 +50,7 @@ template <typename T> class EnteredStack {
         return i;
     }
 
-    std::array<const T*, kMax> entered_{};
+    std::array<const T*, kMax> entered_;
     int size_ = 0;
 };
 

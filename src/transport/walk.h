@@ -133,9 +133,10 @@ template <EffectBits E> class PathWalk {
     // False where the shading normal would let light through a surface or keep it from crossing one.
     static bool sidesAgree(const SurfaceHit&, const EyeDirection&, Vec3 wi, Vec3 wiRender);
 
-    // Of everything between a vertex and a light: nothing behind a surface. `least`: as MediumTracker::transmittance().
-    Spectrum transmittance(Vec3 origin, const LightSample&, NestedDielectrics, RandomStream, RayKind = RayKind::shadow,
-                           float least = 0);
+    // Of everything between a vertex, around which that is, and a light: nothing behind a surface. `least`: as
+    // MediumTracker::transmittance().
+    Spectrum transmittance(Vec3 origin, const LightSample&, const Surroundings& around, RandomStream,
+                           RayKind = RayKind::shadow, float least = 0);
     bool occluded(Vec3 origin, const LightSample& light, RayKind kind = RayKind::shadow) const {
         const Intersector& world = *context.scene.intersector;
         return light.distance < kInfinity ? world.occluded(origin, light.p, path.time, kind)
@@ -390,7 +391,7 @@ template <EffectBits E> Spectrum PathWalk<E>::clearness(const Surroundings& insi
 }
 
 template <EffectBits E>
-Spectrum PathWalk<E>::transmittance(Vec3 origin, const LightSample& light, NestedDielectrics nested,
+Spectrum PathWalk<E>::transmittance(Vec3 origin, const LightSample& light, const Surroundings& around,
                                     [[maybe_unused]] RandomStream random, RayKind kind, [[maybe_unused]] float least) {
     const bool infinite = !(light.distance < kInfinity);
     // Up to tMax; `end` is the same, measured as without media, where they shall make no difference.
@@ -403,10 +404,11 @@ Spectrum PathWalk<E>::transmittance(Vec3 origin, const LightSample& light, Neste
     Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path.time, kind};
     if (!context.scene.boundaries) {
         if (occluded(origin, light, kind)) return Spectrum(0.f);
-        return along(ray, nested.here, ray.tMax, light.distance);
+        return along(ray, around, ray.tMax, light.distance);
     }
     Spectrum result(1.f);
     SurfaceHit hit;
+    NestedDielectrics nested{around, {}};
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
         // The direction is made anew: rounding would let long chains of boundaries miss the light's own point.
         if (!infinite) {

@@ -101,8 +101,7 @@ template <EffectBits E> class LightPath {
     double neeDensity(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec3 away) const;
     double neeDensity(const EmittedRay&, const Receiver&, Vec3 direction, const ScatterView&) const;
     LightScattering weighed(const SurfaceHit&, Vec3 away, const LightVertexSample* sampled);
-    template <typename Tell>
-    void show(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
+    template <typename Tell> void show(const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
     template <typename Tell> void showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t depth, Tell&&);
     template <typename Tell>
     void addSplat(const LensConnection&, const Spectrum& value, double rivals, bool spreads, Tell&&);
@@ -146,7 +145,7 @@ void LightPath<E>::trace(const EmittedRay& start, const Wavelengths& lambda, Tel
     follow(
         start, lambda, false,
         [&](const SurfaceHit& hit, const LightVertex& vertex, const VertexSample& sample, std::uint32_t depth) {
-            show(start, hit, vertex, sample.light, depth, tell);
+            if (depth > 0) show(hit, vertex, sample.light, depth, tell); // camera paths have the first
         },
         [&](Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
             showMedium(p, direction, sample.light, depth, tell);
@@ -185,7 +184,7 @@ void LightPath<E>::goOn(const EmittedRay& start, Ray ray, std::uint32_t depth, b
                 if (mirroredFirst) return;
                 arriveAt(start, ray.origin, 1);
             } else {
-                onCollision(ray.origin, direction, sample, depth); // camera paths have the first, if it is seen at once
+                onCollision(ray.origin, direction, sample, depth); // camera paths have the first
             }
             if (!scatterInMedium(start, ray, sample) || !survives(depth)) return;
             continue;
@@ -330,7 +329,7 @@ template <EffectBits E>
 Spectrum LightPath<E>::passing(Vec3 origin, const LensConnection& c, bool through, std::uint32_t depth) {
     const LightSample end(c.wi, c.lens, c.distance, Spectrum(1.f), 1);
     ++walk_.counters.shadowRays;
-    return walk_.transmittance(origin, end, {walk_.path.nested.after(through), {}}, walk_.sampler.stream(2 * depth + 3),
+    return walk_.transmittance(origin, end, walk_.path.nested.after(through), walk_.sampler.stream(2 * depth + 3),
                                RayKind::camera);
 }
 
@@ -353,8 +352,7 @@ LightScattering LightPath<E>::weighed(const SurfaceHit& hit, Vec3 away, const Li
 
 template <EffectBits E>
 template <typename Tell>
-void LightPath<E>::show(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex, Vec2 lens,
-                        std::uint32_t depth, Tell&& tell) {
+void LightPath<E>::show(const SurfaceHit& hit, const LightVertex& vertex, Vec2 lens, std::uint32_t depth, Tell&& tell) {
     if (!vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // deltas hit no lens
     const auto c = connect(hit.p, lens);
     if (!c) return;
@@ -368,12 +366,9 @@ void LightPath<E>::show(const EmittedRay& start, const SurfaceHit& hit, const Li
     const LightScattering w = walk_.path.densities.heroOnly ? weighed(hit, c->wi, nullptr) : s;
     const bool hero = walk_.path.densities.heroOnly || c->heroOnly;
     const auto scattering = static_cast<double>(w.pdfReverse);
-    Rivals rivals = now_.rivals;
-    if (now_.first) rivals.nee = 0;
-    double density = rivals.of(scattering, w.reverseRatio, hero);
-    if (now_.first) density += now_.rivals.nee * neeDensity(start, hit, vertex, c->wi);
-    density *= static_cast<double>(std::abs(dot(c->wi, hit.ng)));
-    addSplat(*c, walk_.path.beta * s.fcos * clear, density, vertex.bsdf().lobes().has(Lobe::diffuse), tell);
+    const double rivals =
+        now_.rivals.of(scattering, w.reverseRatio, hero) * static_cast<double>(std::abs(dot(c->wi, hit.ng)));
+    addSplat(*c, walk_.path.beta * s.fcos * clear, rivals, vertex.bsdf().lobes().has(Lobe::diffuse), tell);
 }
 
 template <EffectBits E>

@@ -1,10 +1,5 @@
 #include "caustics/light_tracing/light_path_forecast.h"
 
-#include "base/parallel.h"
-#include "base/work.h"
-#include "caustics/shared/pilot.h"
-#include "render/scene.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -50,126 +45,6 @@ std::vector<LightPathShare> largestShares(const std::vector<LightPathShare>& all
     return shares;
 }
 
-namespace {
-
-constexpr int kCells = 12, kLeastCells = 3; // of a row
-constexpr int kReplicates = 2;
-
-using Samples = std::array<std::array<double, CameraVariance::kMany>, kReplicates>;
-
-struct Probe {
-    Samples y{};
-    std::uint64_t rays = 0;
-};
-
-// One call for each sample: a film gets sums alone.
-Probe probe(const PathContext& context, TileFunction render, const RouletteReference& roulette, PixelBounds pixel) {
-    Probe result;
-    PilotPixel film(pixel, kReplicates);
-    for (std::uint32_t i = 0; i < CameraVariance::kMany; ++i) {
-        const TileResult r = render(context, film, {pixel, i, i + 1, &roulette});
-        for (int k = 0; k < kReplicates; ++k) result.y[static_cast<std::size_t>(k)][i] = film.luminance(k);
-        result.rays += r.counters.vertices + r.counters.shadowRays;
-    }
-    return result;
-}
-
-CameraVariance varianceOf(const Samples& samples, double weight) {
-    constexpr double kMany = CameraVariance::kMany;
-    std::array<double, kReplicates> means{};
-    double mean = 0;
-    for (std::size_t k = 0; k < means.size(); ++k) {
-        for (const double v : samples[k]) means[k] += v / kMany;
-        mean += means[k] / kReplicates;
-    }
-    CameraVariance result;
-    for (std::size_t k = 0; k < means.size(); ++k) {
-        for (const double v : samples[k]) {
-            result.secondMoment += weight * square(v) / (kReplicates * kMany);
-            result.variance += weight * square(v - mean) / (kReplicates * kMany - 1);
-        }
-        result.ofMeans += weight * kMany * square(means[k] - mean) / (kReplicates - 1);
-    }
-    return result;
-}
-
-// Without fireflies.
-Samples quietOf(Samples samples, double weight) {
-    const double most = NoiseMeasure::kBright / std::sqrt(weight);
-    for (auto& replicate : samples)
-        for (double& v : replicate)
-            if (v > most) v = 0;
-    return samples;
-}
-
-// Of all pixels, over what they show: the two brightest count as the third. A firefly that a look happens to meet
-// would be all of the noise, beside which nothing is worth a light path; and another technique may have it.
-void limitOutliers(std::span<Samples> pixels, std::span<const double> weights) {
-    constexpr std::size_t kFew = 2;
-    std::vector<double> all;
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        for (const auto& replicate : pixels[i])
-            for (const double v : replicate) all.push_back(v * std::sqrt(weights[i]));
-    std::ranges::nth_element(all, all.begin() + kFew, std::ranges::greater());
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        for (auto& replicate : pixels[i])
-            for (double& v : replicate) v = std::min(v, all[kFew] / std::sqrt(weights[i]));
-}
-
-void add(CameraVariance& to, const CameraVariance& v, double share) {
-    to.secondMoment += v.secondMoment * share;
-    to.variance += v.variance * share;
-    to.ofMeans += v.ofMeans * share;
-}
-
-} // namespace
-
-CameraNoise CameraNoise::of(std::span<const CameraNoise> pixels) {
-    CameraNoise result;
-    const double share = 1 / static_cast<double>(pixels.size());
-    for (const CameraNoise& p : pixels) {
-        add(result.shared, p.shared, share);
-        add(result.quiet, p.quiet, share);
-        add(result.rest, p.rest, share);
-        result.rays += p.rays * share;
-        result.pilotRays += p.pilotRays;
-    }
-    return result;
-}
-
-std::vector<CameraNoise> cameraNoise(const PathContext& context, TileFunction render, const RouletteReference& roulette,
-                                     const LightPathPlan& plan, const NoiseMeasure& measure) {
-    const PilotPixel::Grid grid(context.scene.frame, PilotSize(context.settings).side(kCells, kLeastCells));
-    LightPathPlan all = plan; // leaves to light paths what they can bring
-    all.alone = true;
-    PathContext without = context;
-    without.lightPaths = &all;
-    std::vector<CameraNoise> pixels(grid.size());
-    std::vector<Samples> rests(grid.size());
-    std::vector<double> weights(grid.size());
-    parallelFor(pixels.size(), [&](std::size_t i) {
-        const PixelBounds pixel = grid.pixel(i);
-        addWorkFlag(WorkFlag::pilot);
-        Probe found = probe(context, render, roulette, pixel);
-        const Probe rest = probe(without, render, roulette, pixel);
-        removeWorkFlag(WorkFlag::pilot);
-        // The same paths, so that what one of them has more is what light paths could bring.
-        for (std::size_t k = 0; k < found.y.size(); ++k)
-            for (std::size_t s = 0; s < found.y[k].size(); ++s) found.y[k][s] -= rest.y[k][s];
-        const double weight = measure.weight(pixel.x0, pixel.y0);
-        rests[i] = rest.y;
-        weights[i] = weight;
-        pixels[i] = {varianceOf(found.y, weight),
-                     varianceOf(quietOf(found.y, weight), weight),
-                     {},
-                     static_cast<double>(found.rays) / (kReplicates * CameraVariance::kMany),
-                     found.rays + rest.rays};
-    });
-    limitOutliers(rests, weights);
-    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].rest = varianceOf(rests[i], weights[i]);
-    return pixels;
-}
-
 LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, PixelBounds frame,
                                      const NoiseMeasure& measure) {
     const auto pixels = static_cast<double>(frame.area());
@@ -205,30 +80,62 @@ double LightPathForecast::fireflies() const {
     return sum;
 }
 
+LightPathForecast::CameraPart LightPathForecast::cameraPart(double share, const CameraNoise& camera) const {
+    double missed = fireflies() - (camera.alone.all.secondMoment - camera.alone.quiet.secondMoment);
+    CameraPart result;
+    for (const Term& t : terms_) {
+        if (!t.isFirefly()) {
+            result.quiet.add(t, share);
+            continue;
+        }
+        if (missed > 0)
+            result.missed += t.ofCamera(share);
+        else
+            result.loud.add(t, share);
+        missed -= t.ofCamera(0);
+    }
+    return result;
+}
+
+namespace {
+
+// Of variance `alone`, what is left with as many light paths as `left` is forecast for, where `besideLeft` is forecast
+// for those of a look, which saw `measured` of it left: the look is right, and the forecast tells how it goes on from
+// there.
+double leftOf(double alone, double left, double besideLeft, double measured) {
+    measured = std::clamp(measured, 0.0, 1.0);
+    if (!(besideLeft > 0 && besideLeft < 1)) return alone * measured;
+    return alone * std::pow(left, std::log(std::max(measured, 1e-6)) / std::log(besideLeft));
+}
+
+double ratio(double a, double b) { return b > 0 ? a / b : 1; }
+
+} // namespace
+
 // The second moment of fireflies that light paths tell and a look at some pixels has not seen is that of the brightest,
 // which are the rarest; a mean of samples has all of it, stratified or not. Those that were seen are as noisy as they
 // were seen to be. So is the rest, which is far less than its second moment: most of it is light that camera paths find
 // with next to no noise. The two stay apart, or one firefly that a look happens to see would count as noise that no
 // light path takes away.
+//
+// Terms tell what light paths take from the camera's noise in the mean over all that they see. Where the noise is light
+// that they hardly ever show, such as what a dull mirror sees in itself, it stays, and only a look at camera paths
+// beside light paths knows.
 double LightPathForecast::variance(double share, const CameraNoise& camera) const {
-    const double seenLoud = std::max(0.0, camera.shared.planned() - camera.quiet.planned());
+    const double quiet = camera.alone.quiet.planned();
+    const double seenLoud = std::max(0.0, camera.alone.all.planned() - quiet);
     const double loud = std::min(seenLoud, fireflies()); // no variance is above the second moment
-    double missed = fireflies() - (camera.shared.secondMoment - camera.quiet.secondMoment);
     double variance = 0;
-    Seen fireflies, quiet;
-    for (const Term& t : terms_) {
-        variance += t.ofLight(share);
-        if (!t.isFirefly()) {
-            quiet.add(t, share);
-            continue;
-        }
-        if (missed > 0)
-            variance += t.ofCamera(share);
-        else
-            fireflies.add(t, share);
-        missed -= t.ofCamera(0);
-    }
-    return variance + fireflies.left() * loud + quiet.left() * camera.quiet.planned();
+    for (const Term& t : terms_) variance += t.ofLight(share);
+    const CameraPart part = cameraPart(share, camera);
+    variance += part.missed;
+    if (!(camera.besideShare > 0) || !(share > 0))
+        return variance + part.loud.left() * loud + part.quiet.left() * quiet;
+    const CameraPart beside = cameraPart(camera.besideShare, camera);
+    const double quietBeside = camera.beside.quiet.planned();
+    const double loudBeside = std::max(0.0, camera.beside.all.planned() - quietBeside);
+    return variance + leftOf(loud, part.loud.left(), beside.loud.left(), ratio(loudBeside, seenLoud)) +
+           leftOf(quiet, part.quiet.left(), beside.quiet.left(), ratio(quietBeside, quiet));
 }
 
 } // namespace abbe

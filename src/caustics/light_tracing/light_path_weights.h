@@ -6,7 +6,7 @@
 // normals, the density m of camera rays at y1 (LensConnection::pdfFacingArea), e of the start (EmissionDensity::total)
 // and s light paths per sample of all pixels, the light path is
 //
-//     s e Ck' / m · Π_(j=1)^(k-1) Cj bj / (cj fj)        with b1 = 1,   Ck' = 1 / ck
+//     s e Ck' / m · Π_(j=1)^(k-1) Cj bj / (cj fj)        with b1 = 1,   Ck' = 1 / ck,   k > 2
 //
 // times as likely as the camera path that hit the light by scattering [Veach1997, sec. 10.2]: squared distances cancel
 // edge by edge. For lights far away ck is 1, for those that are a point 1 / d². The densities at each vertex are those
@@ -14,8 +14,10 @@
 // from either side the same numbers, so that the weights of all ways to find a path sum to 1. What lies in media and
 // how far paths go there is left out of them, on both sides.
 //
-// In a medium there are no cosines. Light that is scattered there before anything else and then seen without any vertex
-// between is left to camera paths, which look for lights near their rays; so is light that is seen at once.
+// In a medium there are no cosines.
+//
+// Light that is seen where it first arrives, and light that is seen at once, is left to camera paths: next-event
+// estimation finds it with less noise, and most of what camera paths find would otherwise be weighed for nothing.
 #pragma once
 
 #include "caustics/light_tracing/light_path_plan.h"
@@ -49,7 +51,10 @@ template <EffectBits E> class LightPathWeights {
         : walk_(walk), camera_(camera), arenas_(arenas) {}
 
     // At the first vertex.
-    void begin(Vec3 p);
+    void begin(Vec3 p) {
+        start_ = p;
+        odds_ = walk_.context.lightPaths ? 1 : 0;
+    }
     // At a surface, after its light.
     void arrive(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
     // The path has gone on from there in the direction.
@@ -58,17 +63,30 @@ template <EffectBits E> class LightPathWeights {
     void scatterInMedium();
 
     // Whether light that is hit now could come by light paths.
-    bool weighs() const { return weighs_; }
+    bool weighs() {
+        if (scatterings_ < 2) return false;
+        settle();
+        return odds_ > 0;
+    }
     // Of light that is hit, against next-event estimation of density `lightPdf`: of an area light in the direction,
     float emissionWeight(float lightPdf, const SurfaceHit&, Vec3 direction) const;
     // or of one far away by a path that left `p` in the direction.
     float emissionWeight(float lightPdf, const Light&, Vec3 p, Vec3 direction) const;
-    // Of light that next-event estimation found at the surface; nothing where light paths scatter nothing.
+    // Of light that next-event estimation found at the surface; nothing where no light path finds it.
     std::optional<float> neeWeight(const LightSample&, const PickedLight&, Vec3 woRender);
     // The same at the place `p` in a medium, whose phase function has the density `phase` of the light's direction.
-    std::optional<float> neeWeightInMedium(const LightSample&, const PickedLight&, Vec3 p, float phase) const;
+    std::optional<float> neeWeightInMedium(const LightSample&, const PickedLight&, Vec3 p, float phase);
 
   private:
+    struct Scattering {
+        Vec3 woRender, direction;
+        float eta;
+        bool delta;
+    };
+
+    void settle();
+    void settle(const Scattering&);
+    double perLensDensity() const;
     LightVertex vertexLitFrom(Vec3 wi);
     double heroMean(const Spectrum& ratios) const;
     double lightPathsOf(double ofOneWavelength) const;
@@ -79,26 +97,29 @@ template <EffectBits E> class LightPathWeights {
     const PathWalk<E>& walk_;
     const CameraRay& camera_;
     VertexArenas& arenas_;
-    SurfaceHit met_;  // as the intersector made it
+    SurfaceHit met_; // as the intersector made it
+    Vec3 start_;     // first vertex
+    std::uint32_t scatterings_ = 0;
+    // The last one, until its densities are asked for, as most paths end before: what follows is without it.
+    std::optional<Scattering> unsettled_;
     double odds_ = 0; // of light paths over camera paths, up to the last vertex; 0: no light path can make it
     Spectrum ahead_{1.f}, back_{1.f}; // densities at each lane's wavelength over the hero's: of camera and light paths
     Spectrum before_{1.f};            // `ahead_` without the last scattering
     double scattering_ = 0;           // density of the last direction for camera paths, 1/sr
-    bool first_ = true;               // no more than one vertex yet
-    bool weighs_ = false;             // odds were not 0 where the path scattered last
 };
 
-template <EffectBits E> void LightPathWeights<E>::begin(Vec3 p) {
+// s / m
+template <EffectBits E> double LightPathWeights<E>::perLensDensity() const {
     const PathContext& context = walk_.context;
-    if (!context.lightPaths) return;
     LensQuery query = lensQuery(context.scene.frame, walk_.path.time, walk_.path.densities.film.nm[0]);
-    query.p = p;
+    query.p = start_;
     const auto m = static_cast<double>(context.scene.camera->pdfFacingArea(query, camera_));
-    odds_ = m > 0 ? context.lightPaths->paths / m : 0;
+    return m > 0 ? context.lightPaths->paths / m : 0;
 }
 
 template <EffectBits E> void LightPathWeights<E>::arrive(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
     if (depth == 0) begin(hit.p);
+    settle();
     const auto cosine = static_cast<double>(std::abs(dot(direction, hit.ng)));
     odds_ = cosine > 0 && hit.material->reversible() ? odds_ / cosine : 0;
     if (!(odds_ > 0)) return;
@@ -114,30 +135,40 @@ template <EffectBits E> LightVertex LightPathWeights<E>::vertexLitFrom(Vec3 wi) 
 }
 
 template <EffectBits E> void LightPathWeights<E>::scatter(const BsdfSample& next, Vec3 woRender, Vec3 direction) {
-    const bool delta = walk_.path.delta;
-    if (first_ && delta) odds_ = 0; // a mirror cannot be connected to the lens
-    weighs_ = odds_ > 0;
-    if (!weighs_) return;
-    const LightVertex vertex = vertexLitFrom(direction);
-    const LightScattering s = delta ? vertex.deltaTowards(woRender, 1 / next.eta) : vertex.towards(woRender);
-    const double back = first_ ? 1 : static_cast<double>(s.pdfSolidAngle);
+    if (odds_ > 0) unsettled_ = {woRender, direction, next.eta, walk_.path.delta};
+    ++scatterings_;
+}
+
+template <EffectBits E> void LightPathWeights<E>::settle() {
+    if (!unsettled_) return;
+    settle(*unsettled_);
+    unsettled_.reset();
+}
+
+template <EffectBits E> void LightPathWeights<E>::settle(const Scattering& last) {
+    const bool first = scatterings_ == 1;
+    odds_ *= first ? perLensDensity() : 1;
+    if (first && last.delta) odds_ = 0; // a mirror cannot be connected to the lens
+    if (!(odds_ > 0)) return;
+    const LightVertex vertex = vertexLitFrom(last.direction);
+    const LightScattering s =
+        last.delta ? vertex.deltaTowards(last.woRender, 1 / last.eta) : vertex.towards(last.woRender);
+    const double back = first ? 1 : static_cast<double>(s.pdfSolidAngle);
+    const auto cosine = static_cast<double>(std::abs(dot(last.direction, met_.ng)));
     scattering_ = static_cast<double>(s.pdfReverse);
-    weighs_ = scattering_ > 0;
-    odds_ = weighs_ ? odds_ * back / scattering_ * static_cast<double>(std::abs(dot(direction, met_.ng))) : 0;
+    odds_ = scattering_ > 0 ? odds_ * back / scattering_ * cosine : 0;
     before_ = ahead_;
-    if (!delta) {
-        ahead_ *= Spectrum(s.reverseRatio);
-        if (!first_) back_ *= Spectrum(s.pdfRatio);
-    }
-    first_ = false;
+    if (last.delta) return;
+    ahead_ *= Spectrum(s.reverseRatio);
+    if (!first) back_ *= Spectrum(s.pdfRatio);
 }
 
 template <EffectBits E> void LightPathWeights<E>::scatterInMedium() {
-    weighs_ = odds_ > 0 && !first_;
+    settle();
     scattering_ = static_cast<double>(walk_.path.ownPdf > 0 ? walk_.path.ownPdf : walk_.path.bsdfPdf);
     before_ = ahead_;
-    if (first_) odds_ /= scattering_;
-    first_ = false;
+    if (scatterings_ == 0 && odds_ > 0) odds_ *= perLensDensity() / scattering_;
+    ++scatterings_;
 }
 
 // Densities of light paths and of camera paths as means over all that could have been the hero; paths whose other
@@ -198,20 +229,21 @@ template <EffectBits E> float LightPathWeights<E>::neeShare(double nee, double b
 template <EffectBits E>
 std::optional<float> LightPathWeights<E>::neeWeight(const LightSample& light, const PickedLight& picked,
                                                     Vec3 woRender) {
-    if (!(odds_ > 0)) return std::nullopt;
+    if (!(odds_ > 0) || scatterings_ == 0) return std::nullopt;
     const LightScattering s = vertexLitFrom(light.wi).towards(woRender);
     if (!(s.pdfReverse > 0)) return std::nullopt;
     const double nee = static_cast<double>(picked.probability * light.pdfSolidAngle) * heroMean(ahead_);
     const double bsdf = light.delta ? 0 : static_cast<double>(s.pdfReverse) * heroMean(ahead_ * s.reverseRatio);
-    const double back = first_ ? heroMean(back_) : static_cast<double>(s.pdfSolidAngle) * heroMean(back_ * s.pdfRatio);
+    const double back = static_cast<double>(s.pdfSolidAngle) * heroMean(back_ * s.pdfRatio);
     const auto cosine = static_cast<double>(std::abs(dot(light.wi, met_.ng)));
     return neeShare(nee, bsdf, odds_ * back * cosine * lightEnds(light, picked, met_.p));
 }
 
 template <EffectBits E>
 std::optional<float> LightPathWeights<E>::neeWeightInMedium(const LightSample& light, const PickedLight& picked, Vec3 p,
-                                                            float phase) const {
-    if (!(odds_ > 0) || first_) return std::nullopt;
+                                                            float phase) {
+    settle();
+    if (!(odds_ > 0) || scatterings_ == 0) return std::nullopt;
     const float nee = picked.probability * light.pdfSolidAngle;
     const double ahead = heroMean(ahead_), scattering = static_cast<double>(phase);
     return neeShare(static_cast<double>(nee) * ahead, light.delta ? 0 : scattering * ahead,

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/work.h"
+#include "caustics/light_tracing/camera_look.h"
 #include "caustics/light_tracing/light_path_forecast.h"
 #include "caustics/shared/aim_targets.h"
 #include "caustics/shared/emission_learning.h"
@@ -296,18 +297,24 @@ class LightPathPlanner {
         }
         PathContext seeded = context_;
         seeded.settings.seed = combine64(context_.settings.seed, kJudgeLightPaths);
-        const std::vector<CameraNoise> pixels = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
-        const CameraNoise camera = CameraNoise::of(pixels);
-        leastRest_ = kUnseenRest / static_cast<double>(pixels.size());
+        CameraLook look(seeded, kernel_.render, roulette_, plan, *measure_);
+        CameraNoise camera = CameraNoise::of(look.pixels());
+        leastRest_ = kUnseenRest / static_cast<double>(look.pixels().size());
         const double each = kLightCost / static_cast<double>(heard.paths);
         costs_ = {kCostBesideLightPaths * camera.rays, each * static_cast<double>(heard.rays),
                   each * static_cast<double>(heard.raysAfterSpread)};
+        Efficiencies all = efficiencies(forecast, camera);
+        auto best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+        if (all[best] > kLeastGain) {
+            look.lookBeside(shareOf(best));
+            camera = CameraNoise::of(look.pixels());
+            all = efficiencies(forecast, camera);
+            best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+        }
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera);
         findings_.rest = camera.rest.planned();
-        const Efficiencies all = efficiencies(forecast, camera);
-        const std::vector<Efficiencies> without = withoutGroups(heard.deposits, pixels);
-        const auto best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+        const std::vector<Efficiencies> without = withoutGroups(heard.deposits, look.pixels());
         findings_.gain = all[best];
         if (findings_.gain > 0) {
             const std::size_t chosen = chosenShare(all, without, best);

@@ -32,9 +32,9 @@ double NoiseMeasure::shown(int x, int y) const {
     return std::max(camera, traced_[cell(x, y)]);
 }
 
-double NoiseMeasure::weight(int x, int y) const {
+double NoiseMeasure::weight(int x, int y, double seen) const {
     constexpr double kDark = 0.01; // as Film::relativeNoise
-    return mean_ > 0 ? 1 / (square(shown(x, y)) + kDark * square(mean_)) : 0;
+    return mean_ > 0 ? 1 / (square(std::max(shown(x, y), seen)) + kDark * square(mean_)) : 0;
 }
 
 } // namespace abbe

@@ -41,8 +41,8 @@ class NoiseMeasure {
     NoiseMeasure(PixelBounds frame, const RouletteReference&, std::span<const LightDeposit>);
 
     std::size_t cell(int x, int y) const;
-    // One over the square of luminance; 0 where nobody saw any light at all.
-    double weight(int x, int y) const;
+    // One over the square of luminance; 0 where nobody saw any light at all. `seen`: the mean of more samples there.
+    double weight(int x, int y, double seen = 0) const;
     // How much brighter than its pixel a camera path is that finds the same; infinite if none can.
     double brightness(const LightDeposit& d) const { return d.luminance * std::sqrt(weight(d.x, d.y)) / d.rho; }
     // Far brighter than its pixel, and rarer for camera paths than for light paths. All else is no noise to speak of:

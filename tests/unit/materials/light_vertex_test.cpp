@@ -174,12 +174,14 @@ SurfaceHit metFrom(const Surface& s, Vec3 arrival, double lean) {
 double eyes(Vec3 w) { return static_cast<double>(1 + 0.6f * w.x + 0.5f * w.y * w.z + 0.3f * w.z); }
 double lights(Vec3 w) { return static_cast<double>(1.1f - 0.5f * w.x + 0.3f * w.y + 0.4f * w.z * w.z - 0.4f * w.z); }
 
-// Room for what a vertex makes.
+// Room for a vertex and what it makes.
 struct Arenas {
     Arena own, eye;
+    SurfaceHit hit;
     LightVertex vertex(const Surface& s, double lean, Vec3 from) {
         own.reset();
-        return LightVertex(metFrom(s, -from, lean), s.wavelengths, own, eye);
+        hit = metFrom(s, -from, lean);
+        return {hit, s.wavelengths, own, eye};
     }
 };
 

@@ -58,8 +58,8 @@ TEST_CASE("light path forecast: by the balance heuristic, seen by camera paths o
     }
     // Seen in full, half as noisy in the mean of 64 samples: 512 have 1/2^1.5 of it.
     CameraNoise seen;
-    seen.shared = {weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2};
-    const double planned = seen.shared.planned();
+    seen.alone.all = {weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2};
+    const double planned = seen.alone.all.planned();
     CHECK(planned == doctest::Approx(weight * (1 / rho - 1) / std::pow(2, 1.5)));
     CHECK(forecast.variance(0, seen) == doctest::Approx(planned));
     CHECK(forecast.variance(1, seen) == doctest::Approx(planned * 0.04 + weight / 1.5625));
@@ -89,7 +89,7 @@ TEST_CASE("light path forecast: what a look has missed is the brightest") {
     const LightPathForecast forecast(deposits, kFrame, measure);
     const double weight = 1 / (4 * 1.01);
     CameraNoise seen;
-    seen.shared = seen.quiet = {weight, 0, 0}; // without noise
+    seen.alone.all = seen.alone.quiet = {weight, 0, 0}; // without noise
     CHECK(forecast.variance(0, seen) == doctest::Approx(weight * 1000).epsilon(1e-3));
     CHECK(forecast.variance(1, seen) == doctest::Approx(weight * (1 / 1.001 + 1.0 / 4)).epsilon(1e-3));
 }
@@ -103,10 +103,10 @@ TEST_CASE("light path forecast: a firefly that a look has seen is no noise that 
     const LightPathForecast forecast(deposits, kFrame, measure);
     const double weight = 1 / (4 * 1.01);
     CameraNoise seen;
-    seen.quiet = {weight / 20, 0, 0};
+    seen.alone.quiet = {weight / 20, 0, 0};
     for (const double met : {0.0, 10.0, 1e5}) { // its second moment and variance
         CAPTURE(met);
-        seen.shared = {weight / 20 + met, met, met};
+        seen.alone.all = {weight / 20 + met, met, met};
         CHECK(forecast.variance(1, seen) < weight * (1.1 + met * 1e-5));
     }
 }
@@ -257,6 +257,30 @@ TEST_CASE("aim targets: a ball is aimed at itself, not at the ball around its bo
     CHECK(part.balls.at(0).radius == doctest::Approx(aimTargets({{box, "ball"}}, cut).balls.at(0).radius));
     std::vector<FocusingShape> many(30, {box, "ball"});
     CHECK(aimTargets(many, all, round).balls.at(0).radius == doctest::Approx(box.radius()).epsilon(1e-3));
+}
+
+// Noise that light paths hardly ever show, such as what a dull mirror sees in itself: deposits do not tell of it.
+TEST_CASE("light path forecast: noise that a look has seen beside light paths stays") {
+    const RouletteReference unknown;
+    const std::vector<LightDeposit> deposits = even(1, 1);
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const LightPathForecast forecast(deposits, kFrame, measure);
+    const double ofLight = 1 / 1.01 / 4; // with one light path for each camera path
+    CameraNoise seen;
+    seen.alone.all = seen.alone.quiet = {10, 8, 8};
+    CHECK(forecast.variance(0, seen) == doctest::Approx(8));
+    CHECK(forecast.variance(1, seen) == doctest::Approx(8 * 0.25 + ofLight));
+    seen.beside.all = seen.beside.quiet = {9, 7.2, 7.2};
+    seen.besideShare = 1;
+    CHECK(forecast.variance(0, seen) == doctest::Approx(8));
+    CHECK(forecast.variance(1, seen) == doctest::Approx(7.2 + ofLight));
+    const double more = forecast.variance(3, seen) - 3 / 1.01 / 16;
+    CHECK(more == doctest::Approx(8 * 0.9 * 0.9)); // deposits: a sixteenth in place of a quarter
+    // What only fireflies have been seen to lose is not lost by the rest.
+    seen.beside.quiet = seen.alone.quiet;
+    seen.beside.all = seen.beside.quiet;
+    seen.alone.all = {30, 28, 28};
+    CHECK(forecast.variance(1, seen) == doctest::Approx(8 + ofLight));
 }
 
 } // namespace abbe::test
