@@ -15,7 +15,7 @@ constexpr int kCells = 12, kLeastCells = 3; // of a row
 void add(CameraVariance& to, const CameraVariance& v, double share) {
     to.secondMoment += v.secondMoment * share;
     to.variance += v.variance * share;
-    to.ofMeans += v.ofMeans * share;
+    to.planned += v.planned * share;
 }
 
 void add(CameraNoise::Found& to, const CameraNoise::Found& v, double share) {
@@ -106,16 +106,16 @@ CameraVariance CameraLook::varianceOf(const Samples& samples, double weight) {
     constexpr double kMany = CameraVariance::kMany;
     const double mean = meanOf(samples);
     std::array<double, kReplicates> means{};
-    CameraVariance result;
+    double secondMoment = 0, variance = 0, ofMeans = 0;
     for (std::size_t k = 0; k < means.size(); ++k) {
         for (const double v : samples[k]) {
             means[k] += v / kMany;
-            result.secondMoment += weight * square(v) / (kReplicates * kMany);
-            result.variance += weight * square(v - mean) / (kReplicates * kMany - 1);
+            secondMoment += square(v) / (kReplicates * kMany);
+            variance += square(v - mean) / (kReplicates * kMany - 1);
         }
-        result.ofMeans += weight * kMany * square(means[k] - mean) / (kReplicates - 1);
+        ofMeans += kMany * square(means[k] - mean) / (kReplicates - 1);
     }
-    return result;
+    return CameraVariance::ofPixel(weight * secondMoment, weight * variance, weight * ofMeans);
 }
 
 CameraNoise::Found CameraLook::found(const Samples& samples, const Pixel& look) {

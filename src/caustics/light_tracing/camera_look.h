@@ -21,11 +21,17 @@ struct CameraVariance {
     static constexpr std::uint32_t kMany = 64; // samples of a pixel: a power of two, and the square of another
 
     double secondMoment = 0, variance = 0; // of one sample
-    double ofMeans = 0;                    // variance of the mean of kMany samples of one pixel, times their number
+    // Of 512 samples of a pixel, for which renders are planned, whatever their number is: variance of their mean, times
+    // their number.
+    double planned = 0;
 
-    // The same of 512 samples, for which renders are planned, whatever their number is. Samples of a pixel are
-    // stratified, and what that takes off the variance grows by a power of their number.
-    double planned() const { return variance > 0 ? ofMeans * std::min(1.0, std::sqrt(ofMeans / variance)) : 0; }
+    // `ofMeans`: the same of kMany samples. Samples of a pixel are stratified, and what that takes off the variance
+    // grows by a power of their number. That is so of each pixel by itself: where few samples bring most of the light,
+    // stratification takes nothing away, however much it takes elsewhere.
+    static CameraVariance ofPixel(double secondMoment, double variance, double ofMeans) {
+        const double more = variance > 0 ? std::min(1.0, std::sqrt(ofMeans / variance)) : 0;
+        return {secondMoment, variance, ofMeans * more};
+    }
 };
 
 struct CameraNoise {

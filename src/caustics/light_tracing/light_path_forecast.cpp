@@ -122,8 +122,8 @@ double ratio(double a, double b) { return b > 0 ? a / b : 1; }
 // that they hardly ever show, such as what a dull mirror sees in itself, it stays, and only a look at camera paths
 // beside light paths knows.
 double LightPathForecast::variance(double share, const CameraNoise& camera) const {
-    const double quiet = camera.alone.quiet.planned();
-    const double seenLoud = std::max(0.0, camera.alone.all.planned() - quiet);
+    const double quiet = camera.alone.quiet.planned;
+    const double seenLoud = std::max(0.0, camera.alone.all.planned - quiet);
     const double loud = std::min(seenLoud, fireflies()); // no variance is above the second moment
     double variance = 0;
     for (const Term& t : terms_) variance += t.ofLight(share);
@@ -132,8 +132,8 @@ double LightPathForecast::variance(double share, const CameraNoise& camera) cons
     if (!(camera.besideShare > 0) || !(share > 0))
         return variance + part.loud.left() * loud + part.quiet.left() * quiet;
     const CameraPart beside = cameraPart(camera.besideShare, camera);
-    const double quietBeside = camera.beside.quiet.planned();
-    const double loudBeside = std::max(0.0, camera.beside.all.planned() - quietBeside);
+    const double quietBeside = camera.beside.quiet.planned;
+    const double loudBeside = std::max(0.0, camera.beside.all.planned - quietBeside);
     return variance + leftOf(loud, part.loud.left(), beside.loud.left(), ratio(loudBeside, seenLoud)) +
            leftOf(quiet, part.quiet.left(), beside.quiet.left(), ratio(quietBeside, quiet));
 }

@@ -32,10 +32,10 @@ constexpr double kLightCost = 2.5;
 // brighter for it.
 constexpr double kInsurance = 0.1;
 constexpr double kLeastFireflies = 0.02; // second moment of what light paths could bring better
-// Of everything else, however quiet the n pixels are that a pilot looked at, variance of kUnseenRest / n is left:
-// edges, which few of them have. Without it light paths would seem to be all of the noise, and no number of them too
-// large.
-constexpr double kUnseenRest = 0.02;
+// Of everything else, however quiet the n pixels are that a pilot looked at, variance of kUnseenRest / n is left: one
+// pixel more, such as an edge of a lamp's image, may have as much. Without it light paths would seem to be all of the
+// noise, and no number of them too large.
+constexpr double kUnseenRest = 1;
 // Light paths for each camera path that are tried: √2 apart, since neighbours differ by a few percent in efficiency.
 constexpr std::size_t kShares = 15;
 double shareOf(std::size_t i) { return 0.0625 * std::exp2(0.5 * static_cast<double>(i)); }
@@ -233,7 +233,7 @@ class LightPathPlanner {
     using Efficiencies = std::array<double, kShares>; // over that of camera paths alone
 
     Efficiencies efficiencies(const LightPathForecast& forecast, const CameraNoise& camera) const {
-        const double rest = std::max(camera.rest.planned(), leastRest_);
+        const double rest = std::max(camera.rest.planned, leastRest_);
         const double plain = (rest + forecast.variance(0, camera)) * camera.rays;
         Efficiencies result{};
         for (std::size_t i = 0; i < kShares; ++i) {
@@ -313,7 +313,7 @@ class LightPathPlanner {
         }
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera);
-        findings_.rest = camera.rest.planned();
+        findings_.rest = camera.rest.planned;
         const std::vector<Efficiencies> without = withoutGroups(heard.deposits, look.pixels());
         findings_.gain = all[best];
         if (findings_.gain > 0) {

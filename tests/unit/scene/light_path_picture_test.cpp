@@ -198,7 +198,7 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     plain.replace(plain.find("dielectric { ior glass BK7 }"), 28, "diffuse { reflectance 0.5 }");
     CHECK(findingsOf(plain).verdict == nothingFocuses);
     std::string wide = text;
-    wide.replace(wide.find("radius 3 cm"), 11, "radius 80 cm");
+    wide.replace(wide.find("radius 3 cm"), 11, "radius 160 cm");
     const LightPathFindings needless = findingsOf(wide);
     CHECK(needless.share == 0);
     CHECK(needless.measured);
@@ -272,10 +272,10 @@ TEST_CASE("light paths: going on past a rough surface is left off only as far as
     CHECK(closed.afterSpread < 0.5);
 }
 
-// Under a ball of glass: with a light half as wide as the ball the samples of a pixel, stratified over what is full of
+// Under a ball of glass: with a light as wide as the ball the samples of a pixel, stratified over what is full of
 // the light, beat paths from it.
 TEST_CASE("light paths: a small light needs them, a large one does not") {
-    for (const double radius : {0.5, 0.02}) {
+    for (const double radius : {1.0, 0.02}) {
         CAPTURE(radius);
         const TestScene scene = TestScene::parse(
             "scene 1\nfilm { size 32 32; filter box 0.5 }\n"

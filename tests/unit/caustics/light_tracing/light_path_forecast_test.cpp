@@ -58,8 +58,8 @@ TEST_CASE("light path forecast: by the balance heuristic, seen by camera paths o
     }
     // Seen in full, half as noisy in the mean of 64 samples: 512 have 1/2^1.5 of it.
     CameraNoise seen;
-    seen.alone.all = {weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2};
-    const double planned = seen.alone.all.planned();
+    seen.alone.all = CameraVariance::ofPixel(weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2);
+    const double planned = seen.alone.all.planned;
     CHECK(planned == doctest::Approx(weight * (1 / rho - 1) / std::pow(2, 1.5)));
     CHECK(forecast.variance(0, seen) == doctest::Approx(planned));
     CHECK(forecast.variance(1, seen) == doctest::Approx(planned * 0.04 + weight / 1.5625));
