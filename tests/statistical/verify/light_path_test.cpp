@@ -142,7 +142,7 @@ TEST_CASE("light paths: matte and glossy surfaces, lights of several kinds") {
         "shape sphere { center 0.7 0.5 0; radius 0.5; material conductor { index metal Au; roughness 0.5 } }\n";
     compareBoth("sphere lamp", camera + things + "light sphere { center -1 4 1; radius 0.4; radiance 10 }\n", 24, 48);
     compareBoth("point", camera + things + "light point { position 1 3 1; power 100 W }\n", 24, 48);
-    compareBoth("sky", camera + things + "light sky { radiance 1 }\n", 24, 48);
+    compareBoth("sky", camera + things + "light sky { radiance 1 }\n", 96, 96);
 }
 
 TEST_CASE("light paths: caustics of glass and of glass that disperses") {
