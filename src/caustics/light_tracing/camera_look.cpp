@@ -14,7 +14,6 @@ constexpr int kCells = 12, kLeastCells = 3; // of a row
 
 void add(CameraVariance& to, const CameraVariance& v, double share) {
     to.secondMoment += v.secondMoment * share;
-    to.variance += v.variance * share;
     to.planned += v.planned * share;
 }
 
@@ -54,10 +53,9 @@ CameraLook::CameraLook(const PathContext& context, TileFunction traced, const Ro
         look.bounds = grid.pixel(i);
         const Probe whole = probe(context, look.bounds), rest = probe(without, look.bounds);
         look.weight = measure.weight(look.bounds.x0, look.bounds.y0, meanOf(whole.y));
-        look.alone = look.rest = rest.y;
+        look.rest = rest.y;
         // The same paths, so that what one of them has more is what light paths could bring.
-        for (std::size_t k = 0; k < whole.y.size(); ++k)
-            for (std::size_t s = 0; s < whole.y[k].size(); ++s) look.alone[k][s] = whole.y[k][s] - rest.y[k][s];
+        look.alone = difference(whole.y, rest.y);
         pixels_[i].alone = found(look.alone, look);
         pixels_[i].rays = static_cast<double>(whole.rays) / (kReplicates * CameraVariance::kMany);
         pixels_[i].pilotRays = whole.rays + rest.rays;
@@ -67,16 +65,13 @@ CameraLook::CameraLook(const PathContext& context, TileFunction traced, const Ro
 
 void CameraLook::lookBeside(double share) {
     LightPathPlan plan = plan_;
-    plan.paths =
-        std::max(1u, static_cast<std::uint32_t>(std::lround(share * static_cast<double>(context_.scene.frame.area()))));
+    plan.paths = LightPathPlan::pathsFor(share, static_cast<double>(context_.scene.frame.area()));
     PathContext beside = context_;
     beside.lightPaths = &plan;
     parallelFor(looks_.size(), [&](std::size_t i) {
         const Pixel& look = looks_[i];
-        Probe both = probe(beside, look.bounds);
-        for (std::size_t k = 0; k < both.y.size(); ++k)
-            for (std::size_t s = 0; s < both.y[k].size(); ++s) both.y[k][s] -= look.rest[k][s];
-        pixels_[i].beside = found(both.y, look);
+        const Probe both = probe(beside, look.bounds);
+        pixels_[i].beside = found(difference(both.y, look.rest), look);
         pixels_[i].besideShare = share;
         pixels_[i].pilotRays += both.rays;
     });
@@ -94,6 +89,12 @@ CameraLook::Probe CameraLook::probe(const PathContext& context, PixelBounds pixe
     }
     removeWorkFlag(WorkFlag::pilot);
     return result;
+}
+
+CameraLook::Samples CameraLook::difference(Samples samples, const Samples& others) {
+    for (std::size_t k = 0; k < samples.size(); ++k)
+        for (std::size_t s = 0; s < samples[k].size(); ++s) samples[k][s] -= others[k][s];
+    return samples;
 }
 
 double CameraLook::meanOf(const Samples& samples) {

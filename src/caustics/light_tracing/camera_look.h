@@ -20,17 +20,17 @@ namespace abbe {
 struct CameraVariance {
     static constexpr std::uint32_t kMany = 64; // samples of a pixel: a power of two, and the square of another
 
-    double secondMoment = 0, variance = 0; // of one sample
+    double secondMoment = 0; // of one sample
     // Of 512 samples of a pixel, for which renders are planned, whatever their number is: variance of their mean, times
     // their number.
     double planned = 0;
 
-    // `ofMeans`: the same of kMany samples. Samples of a pixel are stratified, and what that takes off the variance
-    // grows by a power of their number. That is so of each pixel by itself: where few samples bring most of the light,
-    // stratification takes nothing away, however much it takes elsewhere.
+    // `variance`: of one sample; `ofMeans`: as `planned`, of kMany samples. Samples of a pixel are stratified, and what
+    // that takes off the variance grows by a power of their number. That is so of each pixel by itself: where few
+    // samples bring most of the light, stratification takes nothing away, however much it takes elsewhere.
     static CameraVariance ofPixel(double secondMoment, double variance, double ofMeans) {
         const double more = variance > 0 ? std::min(1.0, std::sqrt(ofMeans / variance)) : 0;
-        return {secondMoment, variance, ofMeans * more};
+        return {secondMoment, ofMeans * more};
     }
 };
 
@@ -75,6 +75,7 @@ class CameraLook {
 
     Probe probe(const PathContext&, PixelBounds pixel) const;
     void limitOutliers();
+    static Samples difference(Samples, const Samples&);
     static double meanOf(const Samples&);
     static CameraVariance varianceOf(const Samples&, double weight);
     static CameraNoise::Found found(const Samples&, const Pixel&);

@@ -4,6 +4,8 @@
 #include "caustics/shared/aimed_emission.h"
 #include "caustics/shared/light_path_verdict.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +17,10 @@ struct LightPathPlan {
     AimedEmission emission;
     // Light paths for each sample of all pixels of the frame; > 0.
     std::uint32_t paths = 0;
+    // `share` of them for each of so many pixels.
+    static std::uint32_t pathsFor(double share, double pixels) {
+        return std::max(1u, static_cast<std::uint32_t>(std::lround(share * pixels)));
+    }
     // What light paths can find is left to them alone; else the two ways are weighed by the balance heuristic.
     bool alone = false;
     // Of light paths that have been spread for the first time, by a matte lobe or in a medium, those that go on; (0,

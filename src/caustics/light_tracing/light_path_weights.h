@@ -102,7 +102,9 @@ template <EffectBits E> class LightPathWeights {
     std::uint32_t scatterings_ = 0;
     // The last one, until its densities are asked for, as most paths end before: what follows is without it.
     std::optional<Scattering> unsettled_;
-    double odds_ = 0; // of light paths over camera paths, up to the last vertex; 0: no light path can make it
+    // Of light paths over camera paths, up to the last vertex, but for s / m before the first scattering; 0: no light
+    // path can make it.
+    double odds_ = 0;
     Spectrum ahead_{1.f}, back_{1.f}; // densities at each lane's wavelength over the hero's: of camera and light paths
     Spectrum before_{1.f};            // `ahead_` without the last scattering
     double scattering_ = 0;           // density of the last direction for camera paths, 1/sr

@@ -99,7 +99,7 @@ class LightPathPlanner {
         if (!forced && (findings_.gain < kLeastGain || !sure_)) return noGain;
         findings_.share = findings_.bestShare;
         if (alone()) findings_.share = std::max(findings_.share, 1.0); // the gain is that of both together
-        learned.paths = std::max(1u, static_cast<std::uint32_t>(std::lround(findings_.share * pixels_)));
+        learned.paths = LightPathPlan::pathsFor(findings_.share, pixels_);
         raysBeside_ = findings_.share * costs_.light;
         learned.afterSpread = insured(learned.afterSpread);
         findings_.afterSpread = static_cast<double>(learned.afterSpread);
@@ -231,6 +231,9 @@ class LightPathPlanner {
     }
 
     using Efficiencies = std::array<double, kShares>; // over that of camera paths alone
+    static std::size_t bestOf(const Efficiencies& all) {
+        return static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+    }
 
     Efficiencies efficiencies(const LightPathForecast& forecast, const CameraNoise& camera) const {
         const double rest = std::max(camera.rest.planned, leastRest_);
@@ -304,12 +307,12 @@ class LightPathPlanner {
         costs_ = {kCostBesideLightPaths * camera.rays, each * static_cast<double>(heard.rays),
                   each * static_cast<double>(heard.raysAfterSpread)};
         Efficiencies all = efficiencies(forecast, camera);
-        auto best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+        std::size_t best = bestOf(all);
         if (all[best] > kLeastGain) {
             look.lookBeside(shareOf(best));
             camera = CameraNoise::of(look.pixels());
             all = efficiencies(forecast, camera);
-            best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+            best = bestOf(all);
         }
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera);

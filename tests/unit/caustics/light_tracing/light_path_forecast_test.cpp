@@ -89,7 +89,7 @@ TEST_CASE("light path forecast: what a look has missed is the brightest") {
     const LightPathForecast forecast(deposits, kFrame, measure);
     const double weight = 1 / (4 * 1.01);
     CameraNoise seen;
-    seen.alone.all = seen.alone.quiet = {weight, 0, 0}; // without noise
+    seen.alone.all = seen.alone.quiet = {weight, 0}; // without noise
     CHECK(forecast.variance(0, seen) == doctest::Approx(weight * 1000).epsilon(1e-3));
     CHECK(forecast.variance(1, seen) == doctest::Approx(weight * (1 / 1.001 + 1.0 / 4)).epsilon(1e-3));
 }
@@ -103,10 +103,10 @@ TEST_CASE("light path forecast: a firefly that a look has seen is no noise that 
     const LightPathForecast forecast(deposits, kFrame, measure);
     const double weight = 1 / (4 * 1.01);
     CameraNoise seen;
-    seen.alone.quiet = {weight / 20, 0, 0};
+    seen.alone.quiet = {weight / 20, 0};
     for (const double met : {0.0, 10.0, 1e5}) { // its second moment and variance
         CAPTURE(met);
-        seen.alone.all = {weight / 20 + met, met, met};
+        seen.alone.all = {weight / 20 + met, met};
         CHECK(forecast.variance(1, seen) < weight * (1.1 + met * 1e-5));
     }
 }
@@ -267,10 +267,10 @@ TEST_CASE("light path forecast: noise that a look has seen beside light paths st
     const LightPathForecast forecast(deposits, kFrame, measure);
     const double ofLight = 1 / 1.01 / 4; // with one light path for each camera path
     CameraNoise seen;
-    seen.alone.all = seen.alone.quiet = {10, 8, 8};
+    seen.alone.all = seen.alone.quiet = {10, 8};
     CHECK(forecast.variance(0, seen) == doctest::Approx(8));
     CHECK(forecast.variance(1, seen) == doctest::Approx(8 * 0.25 + ofLight));
-    seen.beside.all = seen.beside.quiet = {9, 7.2, 7.2};
+    seen.beside.all = seen.beside.quiet = {9, 7.2};
     seen.besideShare = 1;
     CHECK(forecast.variance(0, seen) == doctest::Approx(8));
     CHECK(forecast.variance(1, seen) == doctest::Approx(7.2 + ofLight));
@@ -279,7 +279,7 @@ TEST_CASE("light path forecast: noise that a look has seen beside light paths st
     // What only fireflies have been seen to lose is not lost by the rest.
     seen.beside.quiet = seen.alone.quiet;
     seen.beside.all = seen.beside.quiet;
-    seen.alone.all = {30, 28, 28};
+    seen.alone.all = {30, 28};
     CHECK(forecast.variance(1, seen) == doctest::Approx(8 + ofLight));
 }
 
