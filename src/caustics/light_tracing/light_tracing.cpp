@@ -39,7 +39,9 @@ constexpr double kUnseenRest = 1;
 // Light paths for each camera path that are tried: √2 apart, since neighbours differ by a few percent in efficiency.
 constexpr std::size_t kShares = 15;
 double shareOf(std::size_t i) { return 0.0625 * std::exp2(0.5 * static_cast<double>(i)); }
-constexpr std::size_t kGroups = 8;  // of what pilots found, for error bars
+constexpr std::size_t kGroups = 8; // of what pilots found, for error bars
+// Of light paths that no camera paths stand beside: what a pilot hears nothing of would have none either.
+constexpr float kLeastUnaimedAlone = 0.5f;
 constexpr double kMostRegret = 0.1; // of forecast efficiency, what light paths may cost that no error bar rules out
 
 class LightPathPlanner {
@@ -90,9 +92,10 @@ class LightPathPlanner {
             describe(heard, 0);
             return nothingFound;
         }
+        EmissionPlan emission = learnEmission(even, lights_, heard.starts, heard.deposits, *measure_, alone());
+        if (alone()) emission.uniformShare = std::max(emission.uniformShare, kLeastUnaimedAlone);
         LightPathPlan learned{
-            AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(),
-                          learnEmission(even, lights_, heard.starts, heard.deposits, *measure_, alone())),
+            AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(), std::move(emission)),
             first.paths, false, afterSpread(heard)};
         judge(learned);
         if (stop_()) return undecided;

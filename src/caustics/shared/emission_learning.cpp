@@ -130,8 +130,7 @@ EmissionPlan learnEmission(const EmissionPlan& even, std::size_t lights, std::sp
         }
         plan.usefulness[l] = before > 0 ? after / before : 1;
     }
-    // What a pilot hears little of has no camera paths either where light paths bring it alone.
-    plan.uniformShare = static_cast<float>(std::clamp(own, alone ? 0.5 : 0.05, 0.6));
+    plan.uniformShare = static_cast<float>(std::clamp(own, 0.05, 0.6));
     return plan;
 }
 
