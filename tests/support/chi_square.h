@@ -2,12 +2,12 @@
 #pragma once
 
 #include "math/vec.h"
+#include "support/nightly.h"
 #include "support/quadrature.h"
 #include "support/statistics.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -48,11 +48,8 @@ inline ChiSquareResult chiSquareTest(std::span<const double> observed, std::span
     return result;
 }
 
-// Number of samples of a χ² test: many when the environment asks for the nightly run (ABBE_NIGHTLY=1).
-inline int chiSquareSamples() {
-    const char* nightly = std::getenv("ABBE_NIGHTLY");
-    return nightly && *nightly == '1' ? 1000000 : 100000;
-}
+// Number of samples of a χ² test.
+inline int chiSquareSamples() { return nightly() ? 1000000 : 100000; }
 
 // [lower, upper] cut into `count` cells that crowd around `centre`: equal steps of asinh((x - centre) / width), so that
 // a sharp lobe is spread over many cells and smooth functions stay smooth within each.

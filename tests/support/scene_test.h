@@ -8,9 +8,9 @@
 #include "rendering/path_tracer.h"
 #include "scene/build.h"
 #include "scene/registry.h"
+#include "support/nightly.h"
 #include "support/scene_test_film.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -21,12 +21,6 @@
 namespace abbe::test {
 
 using Strategy = Technique::Strategy;
-
-// True in the long runs (./test nightly).
-inline bool nightly() {
-    const char* value = std::getenv("ABBE_NIGHTLY");
-    return value && *value == '1';
-}
 
 // A scene and everything it was read from. Paths in a text are relative to the source tree.
 class TestScene {

@@ -2,9 +2,9 @@
 // refinement to level 10 (positions) and 40 (normals), face by face.
 #include "geometry/subdivision_surface.h"
 #include "io/mesh_file.h"
+#include "support/nightly.h"
 #include "support/subdivision_local.h"
 
-#include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
 
@@ -89,7 +89,6 @@ FaceAgreement compareFaces(const SubdivisionCage& cage, const DicedSurface& dice
 
 TEST_CASE("subdivision: reference cages agree with a refinement to level 10") {
     if (!std::filesystem::exists(kCageFolder)) return;
-    const bool nightly = std::getenv("ABBE_NIGHTLY") != nullptr;
     std::size_t cages = 0, refused = 0, points = 0, normals = 0;
     for (const auto& entry : std::filesystem::directory_iterator(kCageFolder)) {
         const std::string name = entry.path().stem().string();
@@ -113,7 +112,7 @@ TEST_CASE("subdivision: reference cages agree with a refinement to level 10") {
             CHECK(compareWithReference(cage, diced.mesh, 2, 5).distance < 1e-4);
             continue;
         }
-        const FaceAgreement a = compareFaces(cage, diced, nightly ? 200 : 6, nightly ? 1 : 5);
+        const FaceAgreement a = compareFaces(cage, diced, test::nightly() ? 200 : 6, test::nightly() ? 1 : 5);
         CHECK(a.points > 0);
         CHECK(a.distance < 1e-4);
         CHECK(a.angle < angleLimit(name));

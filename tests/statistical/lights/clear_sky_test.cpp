@@ -1,6 +1,7 @@
 // The computed sky against random walks through the same air.
 #include "lights/clear_sky.h"
 #include "media/mie_spheres.h"
+#include "support/nightly.h"
 #include "support/sky_walk.h"
 
 #include <complex>
@@ -75,8 +76,7 @@ TEST_CASE("aerosol scatters as Lorenz-Mie theory has it of continental air") {
 }
 
 TEST_CASE("the sky is that of random walks through air and haze") {
-    const char* nightly = std::getenv("ABBE_NIGHTLY");
-    const int paths = nightly && *nightly == '1' ? 100000 : 2000;
+    const int paths = test::nightly() ? 100000 : 2000;
     // Pure air is exact; the more haze, the more is lost of the shape of what it scatters twice.
     for (const SkyCase& c : {SkyCase{1, 60, 0.2, 0.02, 0.01},
                              {1, 20, 0.8, 0.03, 0.01},

@@ -2,6 +2,7 @@
 // of any hero must give what each wavelength gives alone.
 #include "hero_checks.h"
 #include "suite.h"
+#include "support/nightly.h"
 
 #include <doctest/doctest.h>
 
@@ -15,7 +16,8 @@ constexpr int kSamples = 40000;
 TEST_CASE("each wavelength gets what it gets alone") {
     const CauchyCurve flint(1.55, 0.03); // about three times the dispersion of SF11
     const Wavelengths w = Wavelengths::sample(0.7f);
-    for (const float roughness : {0.f, 0.03f, 0.15f, 0.3f, 0.6f, 1.f})
+    for (const float roughness : {0.f, 0.03f, 0.15f, 0.3f, 0.6f, 1.f}) {
+        if (!nightly() && roughness != 0 && roughness != 0.15f && roughness != 1) continue;
         for (const Vec3 wo : {directionAt(0), directionAt(50), directionAt(80), mirrored(directionAt(20)),
                               mirrored(directionAt(37)), mirrored(directionAt(70))}) {
             const auto together = throughAllHeroes(
@@ -29,6 +31,7 @@ TEST_CASE("each wavelength gets what it gets alone") {
                               lane, ": ", got, " instead of ", expected);
             }
         }
+    }
 }
 
 TEST_CASE("densities are the same whichever lane is the hero") {

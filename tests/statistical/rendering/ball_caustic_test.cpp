@@ -178,7 +178,7 @@ TEST_CASE("quadrature under a ball: twice as fine is the same to 0.05 %" * docte
 }
 
 TEST_CASE("irradiance at twenty places under a ball") {
-    compareView(kLine, 0.5, nightly() ? 1u << 19 : 1u << 15);
+    compareView(kLine, 0.5, nightly() ? 1u << 19 : 1u << 14);
     if (nightly()) compareView(kEdge, 0.5, 1u << 19);
     // Nightly, two and a half standard errors of any place are 0.5 %; most are far less.
     for (const double lightRadius : {0.5, 0.1, 0.02})

@@ -56,7 +56,7 @@ TechniqueScene fog() {
 
 TestImage renderWith(const TestScene& scene, const TechniqueScene& s, const Technique& technique, std::uint64_t seed) {
     RenderSettings settings = scene.settings();
-    settings.samples = nightly() ? 8 * s.samples : s.samples;
+    settings.samples = nightly() ? 8 * s.samples : s.samples / 2;
     settings.seed = seed;
     settings.maxDepth = s.maxDepth;
     settings.technique = technique;
@@ -95,8 +95,10 @@ std::map<std::string, Technique> techniques() {
 // Of the mean of the image. Even directions rarely meet small lights and narrow lobes, one wavelength is coloured
 // noise.
 double resolution(const Technique& t) {
-    if (t.directions == Technique::Directions::uniform) return t.weights == Technique::Weights::equal ? 0.06 : 0.025;
-    return t.wavelengths == 1 ? 0.015 : 0.008;
+    const double of = nightly() ? 1 : 1.5;
+    if (t.directions == Technique::Directions::uniform)
+        return of * (t.weights == Technique::Weights::equal ? 0.06 : 0.025);
+    return of * (t.wavelengths == 1 ? 0.015 : 0.008);
 }
 
 // Without `all` every second one. Without `uniform` only those of importance sampling. Even directions square the

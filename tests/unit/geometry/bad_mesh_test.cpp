@@ -1,6 +1,7 @@
 // Random meshes, most of them damaged: an error that says what is wrong, or a surface that rays and samples can meet.
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 
 #include <cstdlib>
@@ -12,10 +13,7 @@ namespace {
 
 using test::Random;
 
-int tries() {
-    const char* value = std::getenv("ABBE_NIGHTLY");
-    return value && *value == '1' ? 10'000 : 1000;
-}
+int tries() { return test::nightly() ? 10'000 : 1000; }
 
 // Sizes from 1e-30 to 1e15 m, flat and coinciding vertices, indices out of range, numbers that are none.
 MeshData randomMesh(Random& random) {

@@ -7,6 +7,7 @@
 #include "geometry/points.h"
 #include "geometry/subdivision_surface.h"
 #include "math/warp.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 #include "support/subdivision_cages.h"
 #include "unit/geometry/test_meshes.h"
@@ -225,7 +226,7 @@ TEST_CASE("deformation: inside of objects in objects, still and moving") {
 
 TEST_CASE("deformation: closed surfaces let no ray out at any time") {
     // Two cages of the same faces, diced by the plan of one of them.
-    const std::size_t rays = std::getenv("ABBE_NIGHTLY") ? 1'000'000 : 50'000;
+    const std::size_t rays = test::nightly() ? 1'000'000 : 50'000;
     for (const auto& [name, cage, closed] : namedCages()) {
         if (!closed) continue;
         CAPTURE(name);

@@ -4,6 +4,7 @@
 #include "geometry/subdivision_surface.h"
 #include "support/analytic_textures.h"
 #include "support/escapes.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 #include "support/subdivision_cages.h"
 #include "support/subdivision_reference.h"
@@ -177,7 +178,7 @@ TEST_CASE("displacement: a constant moves an exact distance along the normal") {
 }
 
 TEST_CASE("displacement: closed cages stay closed, across seams and creases, at every rate") {
-    const std::size_t rays = std::getenv("ABBE_NIGHTLY") ? 1'000'000 : 6'000;
+    const std::size_t rays = test::nightly() ? 1'000'000 : 6'000;
     const UvWave uv;
     const SpaceWave space;
     const Displacement kinds[] = {

@@ -2,6 +2,7 @@
 // diced surface from inside.
 #include "geometry/subdivision_surface.h"
 #include "support/escapes.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 #include "support/subdivision_cages.h"
 #include "support/subdivision_reference.h"
@@ -16,8 +17,6 @@ using namespace abbe::test;
 namespace {
 
 constexpr std::uint64_t kPlentyOfMemory = 1ull << 33;
-
-bool nightly() { return std::getenv("ABBE_NIGHTLY") != nullptr; }
 
 DicedSurface diceLevel(const SubdivisionCage& cage, double level) {
     REQUIRE(findFault(cage) == std::nullopt);
@@ -249,7 +248,7 @@ TEST_CASE("subdivision: faults of cages are found and named" * doctest::test_sui
 TEST_CASE("subdivision: random cages, sound or not, do no harm" * doctest::test_suite("input")) {
     Random random(99);
     int sound = 0;
-    const int count = nightly() ? 10'000 : 1000;
+    const int count = test::nightly() ? 10'000 : 1000;
     for (int i = 0; i < count; ++i) {
         SubdivisionCage cage;
         const std::uint32_t vertices = 1 + random.bits() % 12;
@@ -294,7 +293,7 @@ TEST_CASE("subdivision: random cages, sound or not, do no harm" * doctest::test_
 }
 
 TEST_CASE("subdivision: no ray leaves a closed surface") {
-    const std::size_t rays = std::getenv("ABBE_NIGHTLY") ? 1'000'000 : 20'000;
+    const std::size_t rays = test::nightly() ? 1'000'000 : 20'000;
     for (const auto& [name, cage, closed] : namedCages()) {
         if (!closed) continue;
         CAPTURE(name);

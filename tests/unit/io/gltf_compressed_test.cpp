@@ -1,5 +1,6 @@
 // glTF geometry compressed by Draco and meshopt: what their own encoders write comes back, and damage is an error.
 #include "gltf_maker.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 
 #include <algorithm>
@@ -187,10 +188,7 @@ std::string withDamage(std::string bytes, Random& random) {
     return bytes;
 }
 
-int triesOf(int usual) {
-    const char* nightly = std::getenv("ABBE_NIGHTLY");
-    return nightly && *nightly == '1' ? 20 * usual : usual;
-}
+int triesOf(int usual) { return test::nightly() ? 20 * usual : usual; }
 
 } // namespace
 

@@ -1,8 +1,8 @@
 // glTF files that are damaged, or ask for what is not there: the message names the place, and nothing crashes.
 #include "gltf_support.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 
-#include <cstdlib>
 #include <doctest/doctest.h>
 #include <limits>
 
@@ -165,8 +165,7 @@ TEST_CASE("gltf: random damage never crashes") {
         return std::min(n - 1, static_cast<std::size_t>(random.uniform() * static_cast<float>(n)));
     };
     int errors = 0;
-    const char* nightly = std::getenv("ABBE_NIGHTLY");
-    const int tries = nightly && *nightly == '1' ? 20'000 : 3000;
+    const int tries = test::nightly() ? 20'000 : 3000;
     for (int i = 0; i < tries; ++i) {
         std::string bytes = whole;
         const std::size_t changes = 1 + below(4);

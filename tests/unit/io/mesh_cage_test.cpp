@@ -1,9 +1,9 @@
 #include "io/file.h"
 #include "io/mesh_file.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 #include "temporary_folder.h"
 
-#include <cstdlib>
 #include <doctest/doctest.h>
 
 using namespace abbe;
@@ -110,10 +110,7 @@ using test::Random;
 
 namespace {
 
-int tries() {
-    const char* nightly = std::getenv("ABBE_NIGHTLY");
-    return nightly && *nightly == '1' ? 20'000 : 2000;
-}
+int tries() { return test::nightly() ? 20'000 : 2000; }
 
 const std::string kTagged = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0.5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                             "g left\nf 1/1 2/2 3/3 4/4\ng right\nf 2/1 5/2 6/3 3/4\nf 1 2 5\n"

@@ -4,10 +4,10 @@
 #include "geometry/mesh.h"
 #include "geometry/subdivision_surface.h"
 #include "io/mesh_file.h"
+#include "support/nightly.h"
 #include "support/statistics.h"
 #include "support/subdivision_reference.h"
 
-#include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
 
@@ -83,7 +83,7 @@ std::size_t escapes(MeshData diced, std::size_t rays, std::uint64_t seed) {
 
 TEST_CASE("subdivision: no ray leaves a closed reference cage") {
     if (!std::filesystem::exists(kCrackFolder)) return;
-    const std::size_t rays = std::getenv("ABBE_NIGHTLY") ? 1'000'000 : 1000;
+    const std::size_t rays = test::nightly() ? 1'000'000 : 1000;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(kCrackFolder))
         if (entry.path().extension() == ".obj") files.push_back(entry.path());
