@@ -30,7 +30,7 @@ says err "pilots of path guiding"
 
 make_set
 # Long enough for several looks at the memory; one thread, so that machines with many do not make it short.
-long=(set.scene -t 1 --samples "${ABBE_MEMORY_SAMPLES:-96}" --checkpoint 200ms)
+long=(set.scene -t 1 --samples "${ABBE_MEMORY_SAMPLES:-48}" --checkpoint 200ms)
 memory_of() { sed -n 's/.*"event":"done".*"memory_bytes":\([0-9]*\).*/\1/p' out; }
 expect 0 "${long[@]}" --texture-cache 1000000MiB --json -o whole.exr
 all=$(($(memory_of) >> 20))
