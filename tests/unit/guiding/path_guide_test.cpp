@@ -1,6 +1,9 @@
 // What a guide has learnt, against the light that it learnt from.
 #include "guiding/guide_training.h"
+#include "materials/diffuse.h"
 #include "math/warp.h"
+#include "path_tracing/directed_bsdf.h"
+#include "spectrum/curve.h"
 
 #include <doctest/doctest.h>
 #include <functional>
@@ -130,6 +133,41 @@ TEST_CASE("a guide finds a small source at infinity, and draws directions with t
         CHECK(integral(view) == doctest::Approx(1).epsilon(0.004));
         checkDraws(view);
     }
+}
+
+// A matte surface of albedo a that is lit evenly shows a, whatever share of its directions a guide gives: the mean
+// weight of a direction. A share or a density that is told a hundredth too large shows at once.
+TEST_CASE("directions of surface and guide together are found with the density that is told, to a thousandth") {
+    const Vec3 source = normalize(Vec3(-1, 0.5f, 0.8f));
+    const float cosine = 1 - 0.05f / (2 * kPi);
+    const TrainedGuide trained =
+        trainGuide(floorUnder(100000, [&](Vec3, Vec3 w) { return dot(w, source) > cosine ? 10 : 0.01f; }), 1);
+    const PathGuide::View view = viewFrom(trained.guide, {0.2f, 0.5f, 0});
+    REQUIRE(view.guided() > 0.5f);
+    constexpr float kAlbedo = 0.5f;
+    const ConstantCurve albedo(kAlbedo);
+    DiffuseParams params;
+    params.reflectance.curve = &albedo;
+    const auto material = makeDiffuse(params);
+    Arena arena;
+    const Bsdf& own = *material->bsdf({}, Wavelengths::single(550), arena);
+    const Frame upright = Frame::fromNormal({0, 0, 1});
+    const Vec3 wo = normalize(Vec3(0.3f, 0.1f, 0.9f));
+    constexpr int kDraws = 2'000'000;
+    Numbers numbers(6);
+    double sum = 0;
+    for (int i = 0; i < kDraws; ++i) {
+        const float lobe = numbers.one();
+        const GuidedSample drawn = GuidedSample::of(view, own, upright, 1, wo, lobe, numbers.two());
+        if (!drawn.next) continue;
+        sum += static_cast<double>(drawn.next->weight[0]);
+        if (i % 1000 > 0) continue;
+        const Vec3 w = upright.toWorld(drawn.next->wi);
+        const float matte = cosineHemispherePdf(drawn.next->wi.z);
+        CHECK(drawn.ownPdf == doctest::Approx(matte).epsilon(1e-4));
+        CHECK(view.mixed(matte, w) == doctest::Approx(drawn.next->pdfSolidAngle).epsilon(0.002));
+    }
+    CHECK(sum / kDraws == doctest::Approx(kAlbedo).epsilon(0.0015));
 }
 
 TEST_CASE("a guide follows a source that is near, from where it was learnt and from farther away") {
