@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-namespace abbe_test {
+namespace abbe::test {
 
 // Seconds that this thread computes for `f`, however busy the machine is; waiting counts nothing.
 template <typename F> double cpuSecondsOf(const F& f) {
@@ -16,4 +16,4 @@ template <typename F> double cpuSecondsOf(const F& f) {
     return now() - begin;
 }
 
-} // namespace abbe_test
+} // namespace abbe::test

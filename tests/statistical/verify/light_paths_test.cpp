@@ -91,7 +91,7 @@ TEST_CASE("light paths: a prism that disperses") {
                                "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 }\n"
                                "    transform { rotate z -3.17 deg; translate -0.5 0.6 0 } }\n"
                                "light sphere { center -4 1.2 0; radius 0.8; radiance 10 }\n"),
-                64, 0.018);
+                64, 0.012);
 }
 
 TEST_CASE("light paths: wavelengths by themselves bring what they bring together") {
@@ -157,7 +157,7 @@ TEST_CASE("light paths: rough glass and rough metal all around the camera") {
             "shape sphere { center 0.9 0.5 -0.9; radius 0.4; material conductor { index metal Au; roughness 0.3 } }\n"
             "shape sphere { center 0.9 0.4 0.9; radius 0.35; material dielectric { ior glass SF11; roughness 0.3 } }\n"
             "light sphere { center -0.8 2.6 0.2; radius 0.5; radiance 10 }\n"),
-        64, 0.0045);
+        64, 0.003);
 }
 
 TEST_CASE("light paths: walls and a light that the camera does not see") {
@@ -168,7 +168,7 @@ TEST_CASE("light paths: walls and a light that the camera does not see") {
                     "shape sphere { center 0.5 0.5 0; radius 0.45; material dielectric { ior 1.5; roughness 0.3 } }\n"
                     "shape quad { points -1 0 1  1 0 1  1 1.5 1  -1 1.5 1; visible-to shadows reflections\n"
                     "    material diffuse { reflectance rgb 0.8 0.4 0.2 } }\n"),
-                56, 0.009);
+                56, 0.006);
 }
 
 TEST_CASE("light paths: a wide beam on rough glass and rough metal in haze" * doctest::skip(!nightly())) {

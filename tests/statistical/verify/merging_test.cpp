@@ -68,7 +68,7 @@ const char* const kBallUnderLight = "shape sphere { center 0 0.9 -1; radius 0.5;
 
 TEST_CASE("merging: a light within four balls of glass, in a mirror") {
     const TestScene scene = inlineScene(shells("ior 1.3"));
-    mergedAgree("shells", renderMerged(scene, false, 128), renderMerged(scene, true, 32), 0.03);
+    mergedAgree("shells", renderMerged(scene, false, 128), renderMerged(scene, true, 32), 0.02);
 }
 
 // With fewer samples a spark is all of the error.
@@ -81,7 +81,7 @@ TEST_CASE("merging: beside manifold sampling, which has some of the light") {
     const TestScene scene = inlineScene(kBallUnderLight);
     const Picture found = renderMerged(scene, true, 32, Technique::LightPaths::always);
     CHECK(found.statistics.caustics.of<ManifoldFindings>().used);
-    mergedAgree("ball", renderMerged(scene, false, 128), found, 0.03);
+    mergedAgree("ball", renderMerged(scene, false, 128), found, 0.02);
 }
 
 TEST_CASE("merging: fog and absorbing glass" * doctest::skip(!nightly())) {
@@ -104,7 +104,7 @@ TEST_CASE("merging: in haze, in a mirror") {
         "shape box { min -2 -0.5 -1.5; max 2 2.5 2; material boundary\n"
         "    interior homogeneous { extinction table 400 0.5 700 0.3 per-m; albedo 0.9; phase henyey-greenstein 0.5 } "
         "}\n");
-    mergedAgree("haze", renderMerged(scene, false, 64), renderMerged(scene, true, 16), 0.04);
+    mergedAgree("haze", renderMerged(scene, false, 64), renderMerged(scene, true, 16), 0.02);
 }
 
 } // namespace abbe::test

@@ -278,7 +278,7 @@ TEST_CASE("obj: speed") {
     double best = 1e9;
     for (int k = 0; k < 5; ++k) {
         MeshFile f;
-        best = std::min(best, abbe_test::cpuSecondsOf([&] { f = meshOfObj(text); }));
+        best = std::min(best, test::cpuSecondsOf([&] { f = meshOfObj(text); }));
         REQUIRE(f.mesh.quads.size() == n * n);
     }
     const double speed = static_cast<double>(text.size()) / best;

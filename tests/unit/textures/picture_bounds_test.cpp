@@ -31,7 +31,7 @@ struct Bounds {
         params.file.value = path;
         params.file.keys.emplace_back("space", "data");
         Diagnostics diagnostics;
-        CHECK(abbe_test::cpuSecondsOf([&] {
+        CHECK(test::cpuSecondsOf([&] {
                   auto made = makeImageTexture(params, std::make_shared<TextureStore>(settings), diagnostics);
                   if (made) made->prepare(use, {}, diagnostics);
               }) < kSoon);

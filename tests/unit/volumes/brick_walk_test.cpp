@@ -186,7 +186,7 @@ TEST_CASE("steps per second") {
     for (int i = 0; i < 20'000; ++i) rays.push_back(randomRay(random, 200));
     std::uint64_t steps = 0;
     float sum = 0;
-    const double seconds = abbe_test::cpuSecondsOf([&] {
+    const double seconds = cpuSecondsOf([&] {
         for (const TestRay& r : rays) {
             BrickWalk walk(s.bounds, r.origin, r.direction, r.t0, r.t1);
             BrickSegment g;
