@@ -9,17 +9,24 @@ namespace {
 constexpr std::size_t kLeastVertices = 32; // of a cell
 constexpr int kSweeps = 6;                 // of light from cell to cell
 
-} // namespace
-
-GivenOff::GivenOff(std::span<const PilotVertex> vertices) : vertices_(vertices), cells_(vertices.size(), kNone) {
+// Of vertices that keep the light that is found there, and of all in media.
+std::vector<SpaceTree::Place> placesOf(std::span<const PilotVertex> vertices) {
     std::vector<SpaceTree::Place> places;
     places.reserve(vertices.size());
     for (std::uint32_t i = 0; i < vertices.size(); ++i)
-        if (vertices[i].spreads) places.push_back({vertices[i].p, vertices[i].face, i});
-    const SpaceTree tree(places, kLeastVertices);
-    for (std::uint32_t cell = 0; cell < tree.leaves(); ++cell)
-        for (const SpaceTree::Place& place : tree.members(places, cell)) cells_[place.number] = cell;
-    spread(tree.leaves());
+        if (vertices[i].spreads || vertices[i].face == kInMedium) places.push_back({vertices[i].p, vertices[i].face, i});
+    return places;
+}
+
+} // namespace
+
+GivenOff::GivenOff(std::span<const PilotVertex> vertices) : GivenOff(vertices, placesOf(vertices)) {}
+
+GivenOff::GivenOff(std::span<const PilotVertex> vertices, std::vector<SpaceTree::Place> places)
+    : vertices_(vertices), tree_(places, kLeastVertices), cells_(vertices.size(), kNone) {
+    for (std::uint32_t cell = 0; cell < tree_.leaves(); ++cell)
+        for (const SpaceTree::Place& place : tree_.members(places, cell)) cells_[place.number] = cell;
+    spread(tree_.leaves());
 }
 
 float GivenOff::arriving(std::size_t vertex) const {
@@ -36,8 +43,10 @@ GivenOff::Source GivenOff::source(std::size_t vertex) const {
         if (!v.goesOn) return from;
         const PilotVertex& next = vertices_[vertex + 1];
         from.known += from.share * next.emission;
-        from.cell = cells_[vertex + 1];
-        if (from.cell != kNone) return from;
+        if (next.spreads) {
+            from.cell = cells_[vertex + 1];
+            return from;
+        }
         from.known += from.share * next.lit;
         from.share *= next.carried;
     }

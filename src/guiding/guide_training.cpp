@@ -363,7 +363,10 @@ class GuideTrainer {
                 const auto weight = static_cast<double>(vertices_[member.number].weight) / frameRadiance;
                 gain += weight * weight * learnt[i].gain;
             }
-        return {together(std::move(space), learnt), gain};
+        const bool media = std::ranges::any_of(vertices_, [](const PilotVertex& v) { return v.face == kInMedium; });
+        TrainedGuide trained{together(std::move(space), learnt), gain};
+        if (media) trained.guide.guideDistances(std::move(givenOff_).cache());
+        return trained;
     }
 
   private:

@@ -30,15 +30,19 @@ struct PilotVertex {
 
 // Means over small cells of surfaces that scatter light from everywhere: light that was found at any vertex spreads
 // from cell to cell along all paths. So one path tells as much of the light from a direction as all that came by where
-// it leads to [Dahm2017, of the same idea]. Cells see no direction: what glossy coats do is a mean.
+// it leads to [Dahm2017, of the same idea]. Cells see no direction: what glossy coats do is a mean, and so, for the
+// cache alone, is what media do that scatter ahead.
 class GivenOff {
   public:
     // `vertices` outlives it.
     explicit GivenOff(std::span<const PilotVertex> vertices);
     // From the direction in which the path goes on at a vertex; light as PilotVertex has it.
     float arriving(std::size_t vertex) const;
+    // For who looks up places that no vertex was at; requires no more of this.
+    RadianceCache cache() && { return {std::move(tree_), std::move(radiance_)}; }
 
   private:
+    GivenOff(std::span<const PilotVertex> vertices, std::vector<SpaceTree::Place> places);
     static constexpr std::uint32_t kNone = 0xffffffff;
     // Where light comes from: `known`, and that share of what a cell gives off, if any.
     struct Source {
@@ -50,6 +54,7 @@ class GivenOff {
     void spread(std::size_t cells);
 
     std::span<const PilotVertex> vertices_;
+    SpaceTree tree_;                   // of cells
     std::vector<std::uint32_t> cells_; // of vertices
     std::vector<float> radiance_;      // of cells
 };

@@ -64,7 +64,8 @@ PathGuide::Direction PathGuide::sample(const Region& region, Vec3 offset, Vec2 u
 }
 
 std::size_t PathGuide::bytes() const {
-    return space_.bytes() + regions_.size() * sizeof(Region) + squares_.size() * (sizeof(Square) + sizeof(Choices));
+    return space_.bytes() + regions_.size() * sizeof(Region) + squares_.size() * (sizeof(Square) + sizeof(Choices)) +
+           (cache_ ? cache_->bytes() : 0);
 }
 
 } // namespace abbe

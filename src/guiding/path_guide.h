@@ -1,13 +1,14 @@
 // What is known of the light that arrives at places of a scene: by it paths are guided to where light comes from.
 #pragma once
 
-#include "guiding/space_tree.h"
+#include "guiding/radiance_cache.h"
 #include "math/warp.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 namespace abbe {
 
@@ -140,6 +141,11 @@ class PathGuide {
     // With squares that are not in a guide yet: from the first of the region on.
     static Direction look(const Region&, const Square* first, Vec3 offset, Vec3 w);
 
+    // By which distances in media are drawn; null: as far as they let a path go.
+    const RadianceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
+    void guideDistances(RadianceCache cache) { cache_ = std::move(cache); }
+    void leaveDistances() { cache_.reset(); }
+
     const std::vector<Region>& regions() const { return regions_; }
     std::size_t bytes() const;
 
@@ -150,6 +156,7 @@ class PathGuide {
     std::vector<Region> regions_;
     std::vector<Square> squares_;
     std::vector<Choices> choices_;
+    std::optional<RadianceCache> cache_;
 };
 
 } // namespace abbe

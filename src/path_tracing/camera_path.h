@@ -4,6 +4,7 @@
 
 #include "path_tracing/directed_bsdf.h"
 #include "path_tracing/emission.h"
+#include "path_tracing/guided_distance.h"
 #include "path_tracing/next_event.h"
 #include "transport/roulette.h"
 #include "transport/walk.h"
@@ -43,8 +44,7 @@ template <EffectBits E> class CameraPath {
     void weighLightBy(float worth) requires(kMedia) { nee_.weighBy(worth); }
 
   private:
-    template <typename Follow>
-    MediumCollision passMedia(const Ray&, float tMax, std::uint32_t depth, std::uint32_t crossings, Follow);
+    template <typename Follow> MediumCollision passMedia(const MediaLeg&, std::uint32_t depth, Follow);
     void meetSurface(SurfaceHit&, Vec3 direction, std::uint32_t depth);
     const Bsdf& bsdfAt(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
     const Bsdf& mixedAt(const Bsdf& own, const SurfaceHit&, Vec3 direction, std::uint32_t depth);
@@ -75,10 +75,8 @@ Spectrum CameraPath<E>::radiance(Ray ray, const Wavelengths& lambda, float roule
     const std::uint32_t maxDepth = walk_.maxDepth();
     SurfaceHit hit;
     for (std::uint32_t depth = 0;; ++depth) {
-        const Arrival arrival =
-            walk_.arrive(ray, hit, depth, [&](const Ray& leg, float tMax, std::uint32_t crossings, auto follow) {
-                return passMedia(leg, tMax, depth, crossings, follow);
-            });
+        const Arrival arrival = walk_.arrive(
+            ray, hit, depth, [&](const MediaLeg& leg, auto follow) { return passMedia(leg, depth, follow); });
         // Emission.
         if (arrival == Arrival::nowhere) {
             emission_.leaveScene(ray);
@@ -120,13 +118,15 @@ Spectrum CameraPath<E>::radiance(Ray ray, const Wavelengths& lambda, float roule
 // Between vertices: the light of media, and of lights near the ray.
 template <EffectBits E>
 template <typename Follow>
-MediumCollision CameraPath<E>::passMedia(const Ray& ray, float tMax, std::uint32_t depth, std::uint32_t crossings,
-                                         Follow follow) {
+MediumCollision CameraPath<E>::passMedia(const MediaLeg& leg, std::uint32_t depth, Follow follow) {
     setWork(Work::lights);
-    nee_.alongRay(ray, tMax, depth, crossings);
+    nee_.alongRay(leg.ray, leg.tMax(), depth, leg.crossings);
     setWork(Work::surface);
-    typename Emission<E>::OfMedia emission(walk_, last_, ray);
-    const MediumCollision collision = follow(&emission);
+    typename Emission<E>::OfMedia emission(walk_, last_, leg.ray);
+    const PathGuide* guide = walk_.context.guide;
+    const RadianceCache* cache = guide && !walk_.path.pull.pending ? guide->cache() : nullptr;
+    const MediumCollision collision =
+        cache ? GuidedDistance<E>(walk_, *cache, leg).choose(emission) : follow(&emission);
     nee_.collideAt(collision.t);
     return collision;
 }

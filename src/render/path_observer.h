@@ -27,6 +27,8 @@ class PathObserver {
     virtual void lightsUp(Vec3 /*p*/) noexcept {}
     // Of what is on its way, this share is absorbed by a medium at `p`, where the path goes on with the rest.
     virtual void absorbs(Vec3 /*p*/, float /*share*/) noexcept {}
+    // How far it goes in media was drawn by a guide, and it is weighed by so much for that.
+    virtual void drawsDistance(float /*weight*/) noexcept {}
     // It is scattered by the surface at which it arrived, whose lobes are given, in the sampled direction; null where
     // the path ends. Light gathered from here on came by way of this scattering.
     virtual void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept = 0;

@@ -24,6 +24,7 @@ struct GuideFindings {
     Verdict verdict = Verdict::undecided;
     double gain = 0; // what of the variance of samples it takes away, as far as pilots tell; 0: unknown
     std::size_t regions = 0, guided = 0, bytes = 0;
+    bool distances = false; // in media, too
 };
 
 struct GuidePlan {
@@ -46,7 +47,7 @@ class GuideSize {
 // First a glance at an eighth of the pixels, where that are enough: most scenes have nothing to guide and show it. Then
 // rounds of pilots, each guided by what those before have found and with up to seven times as many samples as all of
 // them [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know
-// well enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for
+// well enough and distances in media are as well left to chance. Depends on
 // nothing. Requires 0 < size <= GuideSize::kMost, and a context with the plans for caustics, if any. `shown`: what
 // pixels show.
 GuidePlan planGuide(const PathContext&, TileFunction, const Film&, const RouletteReference& shown, int size,

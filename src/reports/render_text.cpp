@@ -337,8 +337,8 @@ std::string glintLine(const GlintFindings& f) {
 
 std::string guideLine(const GuideFindings& f) {
     if (f.verdict != GuideFindings::Verdict::used) return {};
-    return fmt::format("paths guided to where pilots found light: in {} of {} regions ({:.2g} MB)", f.guided, f.regions,
-                       static_cast<double>(f.bytes) / 1e6);
+    return fmt::format("paths guided to where pilots found light: in {} of {} regions{} ({:.2g} MB)", f.guided,
+                       f.regions, f.distances ? " and by distances in media" : "", static_cast<double>(f.bytes) / 1e6);
 }
 
 Json guideJson(const GuideFindings& f) {
@@ -347,6 +347,7 @@ Json guideJson(const GuideFindings& f) {
                          {"variance_taken", f.gain},
                          {"regions", static_cast<std::uint64_t>(f.regions)},
                          {"guided", static_cast<std::uint64_t>(f.guided)},
+                         {"distances", f.distances},
                          {"bytes", static_cast<std::uint64_t>(f.bytes)}});
 }
 

@@ -86,14 +86,14 @@ bool MediumTracker::advance(Active& a) {
 
 MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
                                       RandomStream& random, TrackedWeights weights, EmissionListener* listener,
-                                      float stretch) {
+                                      FirstStep step) {
     const WorkScope work(Work::surface);
     start(ray, tMax, inside, lambda);
     givenUp_ = Spectrum(0.f);
     glows_.clear();
     if (listener) startGlows(ray, tMax, inside, random);
     for (Active& a : active_) {
-        a.optical = random.exponential() * stretch;
+        a.optical = RandomStream::exponentialOf(random.bits() + step.turn) * step.stretch;
         schedule(a, a.segment.tNear);
     }
     for (std::uint32_t missed = 1;;) {

@@ -61,6 +61,14 @@ struct MediumCounters {
     DensityExcess excess() const { return {collisions + lookups, exceeded, mostExceeded}; }
 };
 
+// Of a ray, the first step in each medium: the optical length up to where it may collide.
+struct FirstStep {
+    float stretch = 1; // times as long as what the medium has
+    // Added to the bits of the random number that it is made of. Ways whose turns divide 2^64 evenly start with
+    // stratified steps if their random numbers are the same.
+    std::uint64_t turn = 0;
+};
+
 // One per thread; keeps its memory. Media collide independently of each other, which adds them up.
 class MediumTracker {
   public:
@@ -72,7 +80,7 @@ class MediumTracker {
     // weight, so that a path that loses a tenth of its light does not end in one of ten cases. Emission is collected on
     // the way, at one place in every segment that emits.
     MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
-                           TrackedWeights, EmissionListener* = nullptr, float stretch = 1);
+                           TrackedWeights, EmissionListener* = nullptr, FirstStep = {});
     // Where follow() with these random numbers will find the ray scattered if nothing is in its way, where that can be
     // told without following it: in a single medium of constant density that does not emit. Elsewhere infinite.
     float reach(const Ray&, const MediumStack& inside, const Wavelengths&, RandomStream, float stretch = 1);

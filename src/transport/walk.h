@@ -32,6 +32,16 @@ struct EyeDirection {
     Vec3 woRender;
 };
 
+// A straight way through media.
+struct MediaLeg {
+    const Ray& ray;
+    const SurfaceHit* ahead; // where it ends; null: nowhere
+    std::uint32_t crossings; // of boundaries before it, from the last vertex on
+    RandomStream& random;    // for what happens on it
+
+    float tMax() const { return ahead ? ahead->distance : kInfinity; }
+};
+
 // For paths that look for nothing on their way through media. What these give off is listened to all the same, or such
 // a path would have other random numbers than one that takes it.
 struct IgnoreMedia {
@@ -39,8 +49,7 @@ struct IgnoreMedia {
       public:
         void emits(const MediumEmission&, float, const Spectrum&, const Spectrum&, const Spectrum&) override {}
     };
-    template <typename Follow>
-    MediumCollision operator()(const Ray&, float /*tMax*/, std::uint32_t /*crossings*/, Follow follow) const {
+    template <typename Follow> MediumCollision operator()(const MediaLeg&, Follow follow) const {
         setWork(Work::surface);
         IgnoredEmission unheard;
         return follow(&unheard);
@@ -118,8 +127,8 @@ template <EffectBits E> class PathWalk {
 
     // Goes on to the next collision or to the next surface that does anything to the path, through boundaries of media,
     // open surfaces, and faces of dielectrics that lie hidden inside others (surroundings.h). After a collision the ray
-    // starts there. onTheWay(ray, tMax, crossings, follow), for each straight way through media, up to a surface, a
-    // boundary or the end of everything: returns follow(EmissionListener*), which follows it to where it collides.
+    // starts there. onTheWay(MediaLeg, follow), for each straight way through media, up to a surface, a boundary or the
+    // end of everything: returns follow(EmissionListener*), which follows it to where it collides, or does as much.
     template <typename OnTheWay>
     Arrival arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth, [[maybe_unused]] OnTheWay&& onTheWay);
     Arrival arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) { return arrive(ray, hit, depth, IgnoreMedia()); }
@@ -251,7 +260,8 @@ bool PathWalk<E>::findAhead(const Ray& ray, SurfaceHit& hit, [[maybe_unused]] co
     const Intersector& world = *context.scene.intersector;
     if constexpr (kMedia) {
         const Surroundings& here = path.nested.here;
-        if (!path.delta && !here.absorption()) { // what looks for lights along the ray must know its end
+        // What looks for lights along the ray must know its end, as must what draws distances by what is there.
+        if (!path.delta && !here.absorption() && !context.guide) {
             const float t = media.tracker.reach(ray, here.media(), path.lambda, random, path.pull.stretch());
             if (t < kInfinity) {
                 constexpr float kMargin = 0x1p-13f; // of the place's distance from the origin: 500 times its rounding
@@ -269,12 +279,13 @@ template <EffectBits E>
 template <typename OnTheWay>
 bool PathWalk<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& random, std::uint32_t crossings,
                            OnTheWay& onTheWay) {
-    const float tMax = ahead ? ahead->distance : kInfinity;
+    const MediaLeg leg{ray, ahead, crossings, random};
+    const float tMax = leg.tMax();
     TrackedWeights weights{&path.beta, nullptr};
     if constexpr (kDispersion) weights.density = &path.densities.unidirectional;
-    const MediumCollision collision = onTheWay(ray, tMax, crossings, [&](EmissionListener* emission) {
+    const MediumCollision collision = onTheWay(leg, [&](EmissionListener* emission) {
         return media.tracker.follow(ray, tMax, path.nested.here.media(), path.lambda, random, weights, emission,
-                                    path.pull.stretch());
+                                    {path.pull.stretch()});
     });
     if (path.pull.pending) {
         const Spectrum m = path.pull.mixture(collision.medium ? collision.t : tMax, collision.medium != nullptr);

@@ -93,6 +93,7 @@ void checkGuided(const std::string& added, Technique::LightPaths lightPaths, dou
     const auto& findings = guided.statistics.caustics.of<GuideFindings>();
     CHECK(findings.verdict == GuideFindings::Verdict::used);
     CHECK(findings.guided > 0);
+    CHECK(findings.distances == scene.scene().effects.has(Effect::media));
     for (const Channel channel : {Channel::y, Channel::x, Channel::z})
         checkSame(compareImages(guided.film, plain.film, channel), (nightly() ? 0.4 : 1.5) * resolution);
     CHECK(guided.statistics.dropped == std::array<std::uint64_t, 3>{});
@@ -115,6 +116,19 @@ TEST_CASE("guided paths in fog, of phase functions that are even and that are no
             Technique::LightPaths::off, 0.02, 512);
         if (!nightly()) break;
     }
+}
+
+// What distances are drawn by: voids, collisions that differ by wavelength, and light of the media themselves.
+TEST_CASE("guided paths in clouds, of one extinction for each wavelength, and in those that shine") {
+    checkGuided(
+        "volume noise { size 1.9 1.9 1.9; scale 0.5; coverage 0.6; albedo 0.9; extinction table 400 1 700 3 per-m; "
+        "phase henyey-greenstein 0.5 }\n",
+        Technique::LightPaths::off, 0.02, 256);
+    if (nightly())
+        checkGuided(
+            "shape fog box { min -0.99 -0.99 -0.99; max 0.99 0.99 0.99; material boundary; interior homogeneous "
+            "{ extinction 0.8 per-m; albedo 0.9; emission 0.3 } }\n",
+            Technique::LightPaths::off, 0.02, 256);
 }
 
 TEST_CASE("guided paths beside light paths") {
