@@ -29,7 +29,7 @@ constexpr std::uint32_t kGrowth = 7; // of the number of samples, from round to 
 // Of the variance of samples, what has to go for guiding to be worth what it takes, and for more pilots to be worth it.
 constexpr double kWorthGuiding = 0.5, kWorthPilots = 0.15;
 // What guided distances in media may leave of it to be worth what they take.
-constexpr double kWorthDistances = 0.65;
+constexpr double kWorthDistances = 0.53;
 
 // What a vertex takes while a guide is learnt from it, in bytes: once as a row has found it, once among all, and its
 // places in cells and regions.
@@ -59,7 +59,8 @@ class GuidePilots {
             else
                 distancesLeave_ = leftByDistances();
             const double gain = learn(kRegionVertices);
-            plan_.findings.gain = 1 - (1 - gain / variance_) * (distancesPay() ? distancesLeave_ : 1);
+            const double left = std::max(0.0, 1 - gain / variance_); // by directions
+            plan_.findings.gain = 1 - left * (distancesPay() ? distancesLeave_ : 1);
             const bool promises = always || plan_.findings.gain >= kWorthPilots;
             if (!promises && !(first && guide_->cache())) break; // distances are not tried yet
             next = std::min(promises ? kGrowth * samples : kFirstRound, all - samples);
