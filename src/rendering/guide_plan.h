@@ -16,7 +16,7 @@ struct GuideFindings {
         undecided,      // nothing was looked at yet, or the render was stopped before
         off,            // `guiding off`
         otherTechnique, // another choice of `render` is at odds with it
-        media,          // paths are long in them, or light paths serve a scene that has any
+        media,          // paths are long in them
         noPilot,        // the render is too short for one
         noGain,         // surfaces know well enough where to go
         used

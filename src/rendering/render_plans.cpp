@@ -78,7 +78,7 @@ class RenderPlanner {
         if (!in_.context.scene.effects.has(Effect::media)) return Verdict::undecided;
         // Long paths in dense media forget where they came from, and as pilots they are dear.
         const bool dense = result_.ahead.raysOfPath > kRaysOfDense && technique.guiding != Technique::Guiding::always;
-        return dense || result_.caustics.any() ? Verdict::media : Verdict::undecided;
+        return dense ? Verdict::media : Verdict::undecided;
     }
 
     // The largest pilots within their share of the render.

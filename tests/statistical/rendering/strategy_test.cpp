@@ -134,6 +134,9 @@ TEST_CASE("guided paths in clouds, of one extinction for each wavelength, and in
 TEST_CASE("guided paths beside light paths") {
     const std::string ball = "shape sphere { center -0.55 -0.5 -0.3; radius 0.3; material dielectric { ior 1.5 } }\n";
     checkGuided(ball, Technique::LightPaths::always, 0.02, 512);
+    checkGuided(ball + "volume noise { size 1.9 1.9 1.9; scale 0.5; coverage 0.6; albedo 0.9; extinction 2 per-m; "
+                       "phase henyey-greenstein 0.5 }\n",
+                Technique::LightPaths::always, 0.02, 256);
 }
 
 TEST_CASE("strategies: lights with textures") {
