@@ -14,7 +14,8 @@ std::vector<SpaceTree::Place> placesOf(std::span<const PilotVertex> vertices) {
     std::vector<SpaceTree::Place> places;
     places.reserve(vertices.size());
     for (std::uint32_t i = 0; i < vertices.size(); ++i)
-        if (vertices[i].spreads || vertices[i].face == kInMedium) places.push_back({vertices[i].p, vertices[i].face, i});
+        if (vertices[i].spreads || vertices[i].face == kInMedium)
+            places.push_back({vertices[i].p, vertices[i].face, i});
     return places;
 }
 

@@ -74,7 +74,6 @@ struct PlaceOrder {
 struct Learnt {
     PathGuide::Region region;
     std::vector<PathGuide::Square> squares;
-    std::vector<PathGuide::Choices> choices;
 
     // Density of the direction.
     float guided(const GuideRecord& r) const {
@@ -201,7 +200,6 @@ class RegionLearner {
     std::uint16_t flatten(std::uint32_t quad, float density) {
         const auto number = static_cast<std::uint16_t>(learnt_.squares.size());
         learnt_.squares.emplace_back();
-        learnt_.choices.emplace_back();
         PathGuide::Square made;
         for (std::uint32_t i = 0; i < 16; ++i) {
             const std::uint32_t column = i % 4, row = i / 4;
@@ -216,33 +214,10 @@ class RegionLearner {
                 if (quads_[c].child[sub]) part.child = flatten(quads_[c].child[sub], part.density);
             }
         }
-        learnt_.choices[number] = choicesOf(made);
         learnt_.squares[number] = made;
         return number;
     }
     static std::uint16_t narrowed(float v) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(v) >> 16); }
-    static PathGuide::Choice choiceOf(const std::array<float, 4>& masses) {
-        const float all = masses[0] + masses[1] + masses[2] + masses[3];
-        PathGuide::Choice choice;
-        float before = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            choice.first[i] = before / all;
-            choice.scale[i] = all / masses[i];
-            before += masses[i];
-        }
-        return choice;
-    }
-    static PathGuide::Choices choicesOf(const PathGuide::Square& square) {
-        PathGuide::Choices choices;
-        std::array<float, 4> columns{};
-        for (std::size_t c = 0; c < 4; ++c) {
-            std::array<float, 4> rows{};
-            for (std::size_t r = 0; r < 4; ++r) columns[c] += rows[r] = square.parts[4 * r + c].density;
-            choices.rows[c] = choiceOf(rows);
-        }
-        choices.columns = choiceOf(columns);
-        return choices;
-    }
 
     float perFrame_;
     double least_ = 0, mean_ = 0;
@@ -385,14 +360,12 @@ class GuideTrainer {
     static PathGuide together(SpaceTree space, std::span<JudgedRegion> learnt) {
         std::vector<PathGuide::Region> regions;
         std::vector<PathGuide::Square> squares;
-        std::vector<PathGuide::Choices> choices;
         for (JudgedRegion& j : learnt) {
             j.learnt.region.first = static_cast<std::uint32_t>(squares.size());
             squares.insert(squares.end(), j.learnt.squares.begin(), j.learnt.squares.end());
-            choices.insert(choices.end(), j.learnt.choices.begin(), j.learnt.choices.end());
             regions.push_back(j.learnt.region);
         }
-        return {std::move(space), std::move(regions), std::move(squares), std::move(choices)};
+        return {std::move(space), std::move(regions), std::move(squares)};
     }
 
     std::span<const PilotVertex> vertices_;

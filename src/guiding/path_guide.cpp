@@ -3,7 +3,9 @@
 #include "math/warp.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <immintrin.h>
 
 namespace abbe {
 
@@ -36,6 +38,40 @@ PathGuide::Direction PathGuide::look(const Region& region, const Square* first, 
     }
 }
 
+namespace {
+
+// One of four, in proportion to their masses, drawn by u in [0, 1), which is spread over [0, 1) again.
+std::uint32_t choose(__m128 masses, float& u) {
+    const auto fromOne = _mm_castsi128_ps(_mm_slli_si128(_mm_castps_si128(masses), 4));
+    const __m128 pairs = _mm_add_ps(masses, fromOne);
+    const __m128 sums = _mm_add_ps(pairs, _mm_castsi128_ps(_mm_slli_si128(_mm_castps_si128(pairs), 8)));
+    std::array<float, 5> upTo{};
+    _mm_storeu_ps(upTo.data() + 1, sums);
+    const float x = u * upTo[4];
+    const int passed = _mm_movemask_ps(_mm_cmpge_ps(_mm_set1_ps(x), sums)) & 0b111;
+    const auto i = static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(passed)));
+    u = std::clamp((x - upTo[i]) / (upTo[i + 1] - upTo[i]), 0.f, kOneMinusEpsilon);
+    return i;
+}
+
+// Of parts that follow each other.
+__m128 densitiesOf(const PathGuide::Square::Part* parts) {
+    const auto two = [](const PathGuide::Square::Part* p) { return _mm_loadu_ps(&p->density); };
+    return _mm_shuffle_ps(two(parts), two(parts + 2), 0b10'00'10'00);
+}
+
+// Which part a direction falls in: a column of the square, and a row of that.
+std::uint32_t choosePart(const PathGuide::Square& square, Vec2& u) {
+    const auto& p = square.parts;
+    const __m128 columns = _mm_add_ps(_mm_add_ps(densitiesOf(&p[0]), densitiesOf(&p[4])),
+                                      _mm_add_ps(densitiesOf(&p[8]), densitiesOf(&p[12])));
+    const std::uint32_t c = choose(columns, u.x);
+    const __m128 rows = _mm_setr_ps(p[c].density, p[4 + c].density, p[8 + c].density, p[12 + c].density);
+    return 4 * choose(rows, u.y) + c;
+}
+
+} // namespace
+
 PathGuide::Direction PathGuide::sample(const Region& region, Vec3 offset, Vec2 u) const {
     const bool upper = u.x < region.upper;
     const float half = upper ? region.upper : 1 - region.upper;
@@ -43,10 +79,9 @@ PathGuide::Direction PathGuide::sample(const Region& region, Vec3 offset, Vec2 u
     std::size_t square = region.first + (upper ? region.upperRoot : 0u);
     Vec2 corner;
     for (float size = 0.25f;; size *= 0.25f) {
-        const Choices& choices = choices_[square];
-        const std::uint32_t column = choices.columns.choose(u.x), row = choices.rows[column].choose(u.y);
-        corner = corner + Vec2{static_cast<float>(column), static_cast<float>(row)} * size;
-        const Square::Part& part = squares_[square].parts[4 * row + column];
+        const std::uint32_t chosen = choosePart(squares_[square], u);
+        corner = corner + Vec2{static_cast<float>(chosen % 4), static_cast<float>(chosen / 4)} * size;
+        const Square::Part& part = squares_[square].parts[chosen];
         if (part.child == 0) {
             const Vec2 place = corner + u * size;
             const SphereSquare at{upper, {std::min(place.x, kOneMinusEpsilon), std::min(place.y, kOneMinusEpsilon)}};
@@ -64,7 +99,7 @@ PathGuide::Direction PathGuide::sample(const Region& region, Vec3 offset, Vec2 u
 }
 
 std::size_t PathGuide::bytes() const {
-    return space_.bytes() + regions_.size() * sizeof(Region) + squares_.size() * (sizeof(Square) + sizeof(Choices)) +
+    return space_.bytes() + regions_.size() * sizeof(Region) + squares_.size() * sizeof(Square) +
            (cache_ ? cache_->bytes() : 0);
 }
 

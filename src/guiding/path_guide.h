@@ -33,32 +33,15 @@ struct SphereSquare {
 // each hemisphere [Mueller2017]. Learnt by pilots (guide_training.h) and frozen before the first sample of a render.
 class PathGuide {
   public:
-    // A square of a hemisphere in 4 × 4 parts, x first.
-    struct Square {
+    // A square of a hemisphere in 4 × 4 parts, x first. Two lines of the cache: what is looked up at random waits for
+    // memory more than it computes.
+    struct alignas(128) Square {
         struct Part {
-            float density = 0;          // over the unit square, of a part that is not divided
+            float density = 0;          // over the unit square, in the mean
             std::uint16_t radiance = 0; // from there, as Direction::radiance; the upper half of a float
             std::uint16_t child = 0;    // from the first square of the region on; 0: the part is not divided
         };
         std::array<Part, 16> parts{};
-    };
-    // One of four, drawn by u in [0, 1), which is spread over [0, 1) again.
-    struct Choice {
-        std::array<float, 4> first{}; // of what falls to each, from 0 on
-        std::array<float, 4> scale{}; // 1 over its share
-
-        std::uint32_t choose(float& u) const {
-            const std::uint32_t i = static_cast<std::uint32_t>(u >= first[1]) +
-                                    static_cast<std::uint32_t>(u >= first[2]) +
-                                    static_cast<std::uint32_t>(u >= first[3]);
-            u = std::clamp((u - first[i]) * scale[i], 0.f, kOneMinusEpsilon);
-            return i;
-        }
-    };
-    // By what samples choose among the parts of a square: its column, and a row of that.
-    struct Choices {
-        Choice columns;
-        std::array<Choice, 4> rows;
     };
     // Directions are those from the centre of the region to where they reach a sphere about the place they start from:
     // so they follow what is at that distance, be it what gives off light or a gap through which it comes.
@@ -128,10 +111,8 @@ class PathGuide {
     };
 
     // `regions`: those of the leaves of `space`.
-    // `choices`: those of the squares.
-    PathGuide(SpaceTree space, std::vector<Region> regions, std::vector<Square> squares, std::vector<Choices> choices)
-        : space_(std::move(space)), regions_(std::move(regions)), squares_(std::move(squares)),
-          choices_(std::move(choices)) {}
+    PathGuide(SpaceTree space, std::vector<Region> regions, std::vector<Square> squares)
+        : space_(std::move(space)), regions_(std::move(regions)), squares_(std::move(squares)) {}
 
     // `face`: faceOf() the normal of the surface, on the side of the eye.
     View at(Vec3 p, std::uint8_t face) const {
@@ -155,7 +136,6 @@ class PathGuide {
     SpaceTree space_;
     std::vector<Region> regions_;
     std::vector<Square> squares_;
-    std::vector<Choices> choices_;
     std::optional<RadianceCache> cache_;
 };
 
