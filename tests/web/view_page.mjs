@@ -331,6 +331,7 @@ async function compare(browser, check) {
 async function errors(browser, check) {
     await opened(browser, "still", {}, async ({mock, page, h}) => {
         await h.until(picture, 20000);
+        await page.settled(); // it is drawn with the next frame
         await page.evaluate("navigator.clipboard.writeText = text => { window.copied = text; return Promise.resolve(); }; undefined");
         const good = await h.looks(), list = n => Array.from({length: n}, (_, i) => ({severity: "error", code: `E0${100 + i}`, file: "shot.scene", line: i + 1, column: 4, message: `wrong ${i} <img src=x onerror=alert(1)>`, label: "here", help: "mend it"}));
         mock.save(s => Object.assign(s, {status: "error", diagnostics: list(1), picture: {...s.picture, stale: true}}));
