@@ -75,13 +75,12 @@ void GatherPath<E>::gather(Ray ray, const Wavelengths& lambda, bool heroOnly, co
     for (depth_ = 0; depth_ < most; ++depth_) {
         from_ = ray.origin;
         const Vec3 direction = ray.direction;
-        const Arrival arrival =
-            walk_.arrive(ray, hit, depth_, [&](const MediaLeg& leg, auto follow) {
-                setWork(Work::lights);
-                if (depth_ > 0 && photons.inMedia.size() > 0)
-                    gatherAlong(leg.ray, leg.tMax(), photons.inMedia, radius, tell);
-                return IgnoreMedia()(leg, follow);
-            });
+        const Arrival arrival = walk_.arrive(ray, hit, depth_, [&](const MediaLeg& leg, auto follow) {
+            setWork(Work::lights);
+            if (depth_ > 0 && photons.inMedia.size() > 0)
+                gatherAlong(leg.ray, leg.tMax(), photons.inMedia, radius, tell);
+            return IgnoreMedia()(leg, follow);
+        });
         if (arrival != Arrival::surface || !anyNonZero(path.beta)) return;
         way_ += length(hit.p - from_);
         hit.arrival = direction;
