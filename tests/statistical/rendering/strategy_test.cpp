@@ -92,7 +92,7 @@ void checkGuided(const std::string& added, Technique::LightPaths lightPaths, dou
     const TestImage guided = render(scene, settings);
     const auto& findings = guided.statistics.caustics.of<GuideFindings>();
     CHECK(findings.verdict == GuideFindings::Verdict::used);
-    CHECK(findings.guided > 0);
+    CHECK((findings.guided > 0 || findings.distances)); // fog that shines lights a place from all over
     CHECK(findings.distances == scene.scene().effects.has(Effect::media));
     for (const Channel channel : {Channel::y, Channel::x, Channel::z})
         checkSame(compareImages(guided.film, plain.film, channel), (nightly() ? 0.4 : 1.5) * resolution);
