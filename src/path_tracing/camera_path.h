@@ -123,10 +123,9 @@ MediumCollision CameraPath<E>::passMedia(const MediaLeg& leg, std::uint32_t dept
     nee_.alongRay(leg.ray, leg.tMax(), depth, leg.crossings);
     setWork(Work::surface);
     typename Emission<E>::OfMedia emission(walk_, last_, leg.ray);
-    const PathGuide* guide = walk_.context.guide;
-    const RadianceCache* cache = guide && !walk_.path.pull.pending ? guide->cache() : nullptr;
+    const RadianceCache* cache = walk_.context.distances;
     const MediumCollision collision =
-        cache ? GuidedDistance<E>(walk_, *cache, leg).choose(emission) : follow(&emission);
+        cache && !walk_.path.pull.pending ? GuidedDistance<E>(walk_, *cache, leg).choose(emission) : follow(&emission);
     nee_.collideAt(collision.t);
     return collision;
 }

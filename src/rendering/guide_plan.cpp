@@ -323,8 +323,7 @@ class GuidePilots {
     void round(std::uint32_t samples, int stride, std::uint64_t seed) {
         PathContext context = context_;
         context.settings.seed = seed;
-        context.guide = guide_.get();
-        context.choices |= guide_ != nullptr;
+        guideBy(guide_.get(), context);
         const PilotFilm pixels(frame(), seed);
         requireMemoryFor(static_cast<double>(samples) * pixels.columns() * pixels.rows());
         const RouletteReference patient = RouletteReference::constant(kPatience);
@@ -374,6 +373,12 @@ class GuidePilots {
 };
 
 } // namespace
+
+void guideBy(const PathGuide* guide, PathContext& context) {
+    context.guide = guide;
+    context.distances = guide ? guide->cache() : nullptr;
+    context.choices |= guide != nullptr;
+}
 
 int GuideSize::within(PixelBounds frame, double most) {
     const PilotFilm pixels(frame, 0);

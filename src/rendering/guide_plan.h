@@ -33,6 +33,9 @@ struct GuidePlan {
     std::uint64_t rays = 0; // that the pilots took
 };
 
+// Camera paths of the context go by the guide from here on; null: by none. It outlives the context.
+void guideBy(const PathGuide*, PathContext&);
+
 // Sizes of pilots. A frame is seen through at most 128 × 128 of its pixels, as PilotFilm chooses them; of the largest
 // half a GiB is in use while it is learnt from them.
 class GuideSize {

@@ -109,8 +109,7 @@ class RenderJob {
         statistics_.pilotSeconds = plans_.seconds;
         statistics_.pilotCoreSeconds = plans_.coreSeconds;
         plans_.caustics.giveTo(context_);
-        context_.guide = plans_.guide.get();
-        context_.choices |= plans_.guide != nullptr;
+        guideBy(plans_.guide.get(), context_);
         if (plans_.caustics.any()) render_ = kernel_.lightPaths.render;
     }
 

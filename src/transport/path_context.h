@@ -17,6 +17,7 @@ class ManifoldListener;
 class ManifoldSampler;
 struct MergePlan;
 class PathGuide;
+class RadianceCache;
 struct Scene;
 
 // Vertices from which on no path is certain to go on.
@@ -35,9 +36,10 @@ struct PathContext {
     const LightPathPlan* lightPaths = nullptr;
     const ManifoldSampler* manifold = nullptr;
     ManifoldListener* manifoldListener = nullptr;
-    const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
-    const GlintPlan* glints = nullptr;  // likewise by probes
-    const PathGuide* guide = nullptr;   // where camera paths find light; null: as surfaces scatter
+    const MergePlan* merging = nullptr;       // light that is found by merging, and left out of paths
+    const GlintPlan* glints = nullptr;        // likewise by probes
+    const PathGuide* guide = nullptr;         // where camera paths find light; null: as surfaces scatter
+    const RadianceCache* distances = nullptr; // its cache, where they draw distances in media by it
     // Set: what is in hand is left where it is, and does not count (PathCounters::left).
     const StopFlag* stop = &kNeverStop;
 

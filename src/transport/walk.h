@@ -261,7 +261,7 @@ bool PathWalk<E>::findAhead(const Ray& ray, SurfaceHit& hit, [[maybe_unused]] co
     if constexpr (kMedia) {
         const Surroundings& here = path.nested.here;
         // What looks for lights along the ray must know its end, as must what draws distances by what is there.
-        if (!path.delta && !here.absorption() && !context.guide) {
+        if (!path.delta && !here.absorption() && !context.distances) {
             const float t = media.tracker.reach(ray, here.media(), path.lambda, random, path.pull.stretch());
             if (t < kInfinity) {
                 constexpr float kMargin = 0x1p-13f; // of the place's distance from the origin: 500 times its rounding
