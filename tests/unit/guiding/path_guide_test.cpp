@@ -134,6 +134,30 @@ TEST_CASE("a guide finds a small source at infinity, and draws directions with t
     }
 }
 
+// Every column and every row of a hemisphere's square has a quarter of it: what is drawn, over its density on the
+// square. All directions together would not show a part that is drawn too often, as others are drawn too rarely.
+TEST_CASE("parts of squares are drawn as often as their density tells, to four thousandths") {
+    const TrainedGuide trained = trainGuide(floorUnder(100000, [](Vec3, Vec3 w) { return w.x > 0 ? 2.f : 1.f; }), 1);
+    const PathGuide::View view = viewFrom(trained.guide, {0.2f, 0.5f, 0});
+    std::array<double, 4> columns{}, rows{};
+    int below = 0;
+    Numbers numbers(9);
+    constexpr int kDraws = 16'000'000;
+    for (int i = 0; i < kDraws; ++i) {
+        const PathGuide::Direction d = view.sample(numbers.two());
+        const auto [at, area] = PathGuide::seen({}, d.w);
+        below += !at.upper;
+        const double weight = static_cast<double>(area / d.pdf) / kDraws;
+        columns[static_cast<std::size_t>(4 * at.u.x)] += weight;
+        rows[static_cast<std::size_t>(4 * at.u.y)] += weight;
+    }
+    CHECK(below == 0); // no light comes from there
+    for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(std::abs(columns[i] / 0.25 - 1) < 0.004);
+        CHECK(std::abs(rows[i] / 0.25 - 1) < 0.004);
+    }
+}
+
 // A matte surface of albedo a that is lit evenly shows a, whatever share of its directions a guide gives: the mean
 // weight of a direction. A share or a density that is told a hundredth too large shows at once.
 TEST_CASE("directions of surface and guide together are found with the density that is told, to a thousandth") {
