@@ -45,9 +45,10 @@ class LightVertex {
     };
 
     const Bsdf& bsdf() const { return *own_.bsdf; }
-    // What a camera path sees that comes from `away`: until the next question.
-    // Made anew although it is the same for most materials: some keep what they know of a direction (OpenPbrBsdf).
+    // What a camera path sees that comes from `away`: until the next question. At a point, materials that do not bend
+    // look the same from everywhere.
     View seen(Vec3 away) const {
+        if (!hit_.material->bends() && !(hit_.footprint > 0)) return own_;
         eye_.reset();
         return seenAlong(-away, eye_);
     }

@@ -26,6 +26,8 @@
 #include "render/light_vertex.h"
 #include "transport/walk.h"
 
+#include <array>
+
 namespace abbe {
 
 // Room for LightVertex: what light sees, and what the eye does.
@@ -78,16 +80,18 @@ template <EffectBits E> class LightPathWeights {
     std::optional<float> neeWeightInMedium(const LightSample&, const PickedLight&, Vec3 p, float phase);
 
   private:
+    // A surface that the path has met, and where it has gone from there.
     struct Scattering {
+        SurfaceHit hit; // as the intersector made it
         Vec3 woRender, direction;
         float eta;
-        bool delta;
+        bool delta, first;
     };
 
     void settle();
-    void settle(const Scattering&);
+    void settle(Scattering&);
     double perLensDensity() const;
-    LightVertex vertexLitFrom(Vec3 wi);
+    LightVertex vertexLitFrom(SurfaceHit& met, Vec3 wi);
     double heroMean(const Spectrum& ratios) const;
     double lightPathsOf(double ofOneWavelength) const;
     float emissionWeight(float lightPdf, double ends) const;
@@ -97,11 +101,13 @@ template <EffectBits E> class LightPathWeights {
     const PathWalk<E>& walk_;
     const CameraRay& camera_;
     VertexArenas& arenas_;
-    SurfaceHit met_; // as the intersector made it
-    Vec3 start_;     // first vertex
+    Vec3 start_; // first vertex
     std::uint32_t scatterings_ = 0;
-    // The last one, until its densities are asked for, as most paths end before: what follows is without it.
-    std::optional<Scattering> unsettled_;
+    // The last ones, until their densities are asked for, as many paths end before: what follows is without those from
+    // settled_ to met_. In met_ is the surface where the path is.
+    static constexpr std::size_t kMostUnsettled = 3;
+    std::array<Scattering, kMostUnsettled + 1> surfaces_;
+    std::size_t settled_ = 0, met_ = 0;
     // Of light paths over camera paths, up to the last vertex, but for s / m before the first scattering; 0: no light
     // path can make it.
     double odds_ = 0;
@@ -121,48 +127,52 @@ template <EffectBits E> double LightPathWeights<E>::perLensDensity() const {
 
 template <EffectBits E> void LightPathWeights<E>::arrive(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
     if (depth == 0) begin(hit.p);
-    settle();
     const auto cosine = static_cast<double>(std::abs(dot(direction, hit.ng)));
     odds_ = cosine > 0 && hit.material->reversible() ? odds_ / cosine : 0;
     if (!(odds_ > 0)) return;
-    met_ = hit;
-    met_.footprint = 0;
+    if (met_ == kMostUnsettled) settle();
+    if (settled_ == met_) settled_ = met_ = 0;
+    surfaces_[met_].hit = hit;
+    surfaces_[met_].hit.footprint = 0;
 }
 
 // The surface for light that arrives from the unit direction `wi`.
-template <EffectBits E> LightVertex LightPathWeights<E>::vertexLitFrom(Vec3 wi) {
+template <EffectBits E> LightVertex LightPathWeights<E>::vertexLitFrom(SurfaceHit& met, Vec3 wi) {
     arenas_.own.reset();
-    met_.arrival = -wi;
-    return {met_, walk_.path.densities.film, arenas_.own, arenas_.eye};
+    met.arrival = -wi;
+    return {met, walk_.path.densities.film, arenas_.own, arenas_.eye};
 }
 
 template <EffectBits E> void LightPathWeights<E>::scatter(const BsdfSample& next, Vec3 woRender, Vec3 direction) {
-    if (odds_ > 0) unsettled_ = {woRender, direction, next.eta, walk_.path.delta};
-    ++scatterings_;
+    const bool delta = walk_.path.delta, first = scatterings_++ == 0;
+    if (first && delta) odds_ = 0; // a mirror cannot be connected to the lens
+    if (!(odds_ > 0)) return;
+    Scattering& here = surfaces_[met_++];
+    here.woRender = woRender;
+    here.direction = direction;
+    here.eta = next.eta;
+    here.delta = delta;
+    here.first = first;
 }
 
 template <EffectBits E> void LightPathWeights<E>::settle() {
-    if (!unsettled_) return;
-    settle(*unsettled_);
-    unsettled_.reset();
+    while (settled_ < met_) settle(surfaces_[settled_++]);
 }
 
-template <EffectBits E> void LightPathWeights<E>::settle(const Scattering& last) {
-    const bool first = scatterings_ == 1;
-    odds_ *= first ? perLensDensity() : 1;
-    if (first && last.delta) odds_ = 0; // a mirror cannot be connected to the lens
+template <EffectBits E> void LightPathWeights<E>::settle(Scattering& last) {
+    odds_ *= last.first ? perLensDensity() : 1;
     if (!(odds_ > 0)) return;
-    const LightVertex vertex = vertexLitFrom(last.direction);
+    const LightVertex vertex = vertexLitFrom(last.hit, last.direction);
     const LightScattering s =
         last.delta ? vertex.deltaTowards(last.woRender, 1 / last.eta) : vertex.towards(last.woRender);
-    const double back = first ? 1 : static_cast<double>(s.pdfSolidAngle);
-    const auto cosine = static_cast<double>(std::abs(dot(last.direction, met_.ng)));
+    const double back = last.first ? 1 : static_cast<double>(s.pdfSolidAngle);
+    const auto cosine = static_cast<double>(std::abs(dot(last.direction, last.hit.ng)));
     scattering_ = static_cast<double>(s.pdfReverse);
     odds_ = scattering_ > 0 ? odds_ * back / scattering_ * cosine : 0;
     before_ = ahead_;
     if (last.delta) return;
     ahead_ *= Spectrum(s.reverseRatio);
-    if (!first) back_ *= Spectrum(s.pdfRatio);
+    if (!last.first) back_ *= Spectrum(s.pdfRatio);
 }
 
 template <EffectBits E> void LightPathWeights<E>::scatterInMedium() {
@@ -232,13 +242,16 @@ template <EffectBits E>
 std::optional<float> LightPathWeights<E>::neeWeight(const LightSample& light, const PickedLight& picked,
                                                     Vec3 woRender) {
     if (!(odds_ > 0) || scatterings_ == 0) return std::nullopt;
-    const LightScattering s = vertexLitFrom(light.wi).towards(woRender);
+    settle();
+    if (!(odds_ > 0)) return std::nullopt;
+    SurfaceHit& met = surfaces_[met_].hit;
+    const LightScattering s = vertexLitFrom(met, light.wi).towards(woRender);
     if (!(s.pdfReverse > 0)) return std::nullopt;
     const double nee = static_cast<double>(picked.probability * light.pdfSolidAngle) * heroMean(ahead_);
     const double bsdf = light.delta ? 0 : static_cast<double>(s.pdfReverse) * heroMean(ahead_ * s.reverseRatio);
     const double back = static_cast<double>(s.pdfSolidAngle) * heroMean(back_ * s.pdfRatio);
-    const auto cosine = static_cast<double>(std::abs(dot(light.wi, met_.ng)));
-    return neeShare(nee, bsdf, odds_ * back * cosine * lightEnds(light, picked, met_.p));
+    const auto cosine = static_cast<double>(std::abs(dot(light.wi, met.ng)));
+    return neeShare(nee, bsdf, odds_ * back * cosine * lightEnds(light, picked, met.p));
 }
 
 template <EffectBits E>
