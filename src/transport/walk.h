@@ -151,9 +151,9 @@ template <EffectBits E> class PathWalk {
         return light.distance < kInfinity ? world.occluded(origin, light.p, path.time, kind)
                                           : world.occluded({origin, light.wi, kInfinity, path.time, kind});
     }
-    // Whether next-event estimation from within the medium could find anything. Light paths are weighed against it as
-    // if it were made everywhere.
-    bool isLit(const Medium& medium) const { return context.lightPaths || context.scene.mediumUses[medium.number].lit; }
+    // Whether next-event estimation from within the medium could find anything: elsewhere it is not made, and nothing
+    // is weighed against it.
+    bool isLit(const Medium& medium) const { return context.scene.mediumUses[medium.number].lit; }
     // The same of all media of the shapes around the path.
     bool isLitHere() const {
         const MediumStack& around = path.nested.here.media();

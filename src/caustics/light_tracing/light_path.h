@@ -461,7 +461,8 @@ bool LightPath<E>::scatterInMedium(const EmittedRay& start, Ray& ray, const Vert
     if (now_.first) {
         const auto density = static_cast<double>(phase.value(cosine));
         if (!(density > 0)) return false;
-        now_.rivals.nee *= neeDensity(start, ray.origin, -start.ray.direction, {}) / density;
+        const double nee = walk_.isLit(*walk_.collided) ? neeDensity(start, ray.origin, -start.ray.direction, {}) : 0;
+        now_.rivals.nee *= nee / density;
     }
     if (phase.spectral()) walk_.path.beta *= phase.ratio(cosine, walk_.path.lambda);
     ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
