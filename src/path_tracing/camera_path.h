@@ -136,8 +136,12 @@ void CameraPath<E>::meetSurface(SurfaceHit& hit, Vec3 direction, [[maybe_unused]
     if constexpr (kTextures || Walk::kInterfaces) hit.arrival = direction;
     // Beside samples of the light, which are points, light is looked up at points: the two must see the same.
     if constexpr (kTextures) hit.footprint = walk_.path.delta ? walk_.path.cone.radius : 0;
-    if (walk_.estimate.observer) [[unlikely]]
+    if (walk_.estimate.observer) [[unlikely]] {
+        if constexpr (kMedia)
+            if (const SurfacePull& pull = walk_.path.pull; pull.medium)
+                walk_.estimate.observer->walked(*pull.medium, pull.likelihood());
         walk_.estimate.observer->arrives(hit, walk_.path.beta);
+    }
     if (hit.light) {
         const WorkScope work(Work::lights);
         emission_.addSurface(hit, direction);
@@ -323,9 +327,13 @@ template <EffectBits E> bool CameraPath<E>::leavesBySurface(const PhaseFunction&
 template <EffectBits E>
 void CameraPath<E>::pullToSurface(const VertexSample& sample, Vec3 before, float& cosine, Vec3& direction) {
     SurfacePull& pull = walk_.path.pull;
-    if (pull.medium != walk_.collided) pull.prepare(*walk_.collided, walk_.path.lambda);
-    pull.drawn = sample.lobe < SurfacePull::kShare;
-    if (pull.drawn) {
+    if (pull.medium != walk_.collided) {
+        const PulledShares* shares = walk_.context.pulled;
+        const float share = shares ? shares->of(*walk_.collided) : PulledShares::kUnknown;
+        pull.begin(*walk_.collided, walk_.path.lambda, share, sample.lobe < share);
+    }
+    if (!pull.mixes()) return;
+    if (pull.pulls()) {
         direction = directionAbout(pull.n, pull.drawCosine(sample.bsdf.x), sample.bsdf.y);
         cosine = std::clamp(dot(before, direction), -1.f, 1.f);
     }

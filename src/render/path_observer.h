@@ -10,6 +10,7 @@
 
 namespace abbe {
 
+class Medium;
 class PhaseFunction;
 
 // Receives the events of a path. Called by the path loop in the order of events. Watching changes nothing of the path.
@@ -29,6 +30,9 @@ class PathObserver {
     virtual void absorbs(Vec3 /*p*/, float /*share*/) noexcept {}
     // How far it goes in media was drawn by a guide, and it is weighed by so much for that.
     virtual void drawsDistance(float /*weight*/) noexcept {}
+    // On its way to where it arrives next it walked through a solid, with this likelihood of having been drawn to the
+    // surface (SurfacePull).
+    virtual void walked(const Medium&, float /*likelihood*/) noexcept {}
     // It is scattered by the surface at which it arrived, whose lobes are given, in the sampled direction; null where
     // the path ends. Light gathered from here on came by way of this scattering.
     virtual void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept = 0;

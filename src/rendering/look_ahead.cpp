@@ -187,9 +187,11 @@ class FramePilot {
         if (roulette == Technique::Roulette::throughput) result_.roulette = RouletteReference::constant(1);
         if (roulette == Technique::Roulette::off) result_.roulette = RouletteReference::constant(kNoRoulette);
         const Stopwatch watch;
-        PilotFilm pilot = look();
+        WalkPilot walks;
+        PilotFilm pilot = look(WalkPilot::wanted(context_.scene) ? &walks : nullptr);
         describe(pilot, watch.seconds());
         if (roulette == Technique::Roulette::pilot) result_.roulette = RouletteReference(pilot);
+        result_.pulled = walks.shares(context_.scene, RouletteReference(pilot));
         if (context_.settings.adaptive && !stop_()) result_.plan = plan();
         for (std::size_t i = 0; i < state.pixelTileCount(); ++i) {
             const PixelBounds pixels = state.pixels(i);
@@ -207,6 +209,7 @@ class FramePilot {
     PathContext reseeded(std::uint64_t key) const {
         PathContext context = context_;
         context.settings.seed = combine64(context_.settings.seed, key);
+        context.pulled = &result_.pulled;
         return context;
     }
 
@@ -219,13 +222,15 @@ class FramePilot {
         return c.vertices + c.shadowRays;
     }
 
-    PilotFilm look() {
+    PilotFilm look(WalkPilot* walks) {
         const PathContext context = reseeded(kPilot);
         PilotFilm pilot(frame_, context.settings.seed);
+        const std::unique_ptr<Film> heard = walks ? walks->listen(pilot) : nullptr;
+        Film& film = heard ? *heard : pilot;
         parallelFor(static_cast<std::size_t>(pilot.rows()), [&](std::size_t i) {
             const int row = static_cast<int>(i);
             for (int column = 0; column < pilot.columns() && !stop_(); ++column)
-                pilot.noteRays(column, row, trace(context, pilot, pilot.pixelOf(column, row), PilotFilm::kSamples));
+                pilot.noteRays(column, row, trace(context, film, pilot.pixelOf(column, row), PilotFilm::kSamples));
         });
         return pilot;
     }

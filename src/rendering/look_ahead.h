@@ -5,6 +5,7 @@
 #include "render/integrator.h"
 #include "rendering/sampling_plan.h"
 #include "transport/roulette.h"
+#include "transport/solid_walk.h"
 
 #include <functional>
 #include <vector>
@@ -29,6 +30,7 @@ class RenderState;
 // rendered.
 struct LookAhead {
     RouletteReference roulette;
+    PulledShares pulled;           // of walks in solids
     SamplingPlan plan;             // even unless the settings ask for more
     std::vector<double> tileCosts; // of a sample in each tile of the state, in rays
     std::uint64_t rays = 0;        // that it took

@@ -17,6 +17,7 @@ class ManifoldListener;
 class ManifoldSampler;
 struct MergePlan;
 class PathGuide;
+class PulledShares;
 class RadianceCache;
 struct Scene;
 
@@ -40,6 +41,7 @@ struct PathContext {
     const GlintPlan* glints = nullptr;        // likewise by probes
     const PathGuide* guide = nullptr;         // where camera paths find light; null: as surfaces scatter
     const RadianceCache* distances = nullptr; // its cache, where they draw distances in media by it
+    const PulledShares* pulled = nullptr;     // of walks in solids; null: PulledShares::kUnknown of all
     // Set: what is in hand is left where it is, and does not count (PathCounters::left).
     const StopFlag* stop = &kNeverStop;
 

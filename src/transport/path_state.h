@@ -4,6 +4,7 @@
 #include "render/effects.h"
 #include "spectrum/curve.h"
 #include "spectrum/spectrum.h"
+#include "transport/solid_walk.h"
 #include "transport/surroundings.h"
 
 #include <algorithm>
@@ -71,53 +72,6 @@ struct RayCone {
 
   private:
     static constexpr float kGrazing = 0.05f; // smaller cosines would widen it without an end
-};
-
-// Steps of a walk inside a solid that are drawn towards the surface met last: by the directions and distances of light
-// that leaves the half space behind it, which falls to 1/e within 1/κ mean free paths [Krivanek2014]. Half of the steps
-// are drawn so, and all are weighed by the density of the mixture, at each wavelength with its own κ.
-struct SurfacePull {
-    static constexpr float kShare = 0.5f;
-
-    Vec3 n;                         // of that surface, outside
-    const Medium* medium = nullptr; // what the two below are of; null: of none yet
-    Spectrum extinction;            // 1/m
-    Spectrum kappa;
-    // Of the direction just taken.
-    Spectrum ratio;       // its density as drawn to the surface over that of the phase function
-    float cosine = 0;     // to n
-    bool drawn = false;   // to the surface
-    bool pending = false; // whether the step is to be weighed
-
-    void prepare(const Medium& inside, const Wavelengths& lambda) {
-        medium = &inside;
-        extinction = inside.extinction().at(lambda);
-        const Spectrum albedo = inside.albedo().at(lambda);
-        // Where distances have one density for all wavelengths, directions have, too.
-        const bool alike = inside.extinction().isConstant();
-        const Spectrum lost = Spectrum(1.f) - (alike ? Spectrum(mean(albedo)) : albedo);
-        // The root of κ = α artanh κ, nearly; nowhere so small that a density loses its digits.
-        kappa = sqrt(min(max(3.f * lost * (Spectrum(1.f) - 0.8f * lost), Spectrum(1e-4f)), Spectrum(0.95f)));
-    }
-    float drawCosine(float u) const {
-        const float k = kappa[0];
-        return std::clamp((1 - (1 + k) * std::pow((1 - k) / (1 + k), u)) / k, -1.f, 1.f);
-    }
-    void take(float w, float phase) {
-        cosine = w;
-        const Spectrum one(1.f), both = log((one + kappa) / (one - kappa));
-        ratio = kappa / (both * (one - kappa * w)) * (1 / (2 * kPi * phase));
-        pending = true;
-    }
-    // By how much longer than those of the medium distances are.
-    float stretch() const { return drawn ? 1 / (1 - kappa[0] * cosine) : 1; }
-    // After the way `t`: density of the mixture over that of phase function and medium.
-    Spectrum mixture(float t, bool collided) {
-        const Spectrum grown = exp(min(extinction * kappa * (cosine * t), Spectrum(80.f)));
-        const Spectrum towards = ratio * grown * kShare;
-        pending = drawn = false;
-        return fma(collided ? Spectrum(1.f) - kappa * cosine : Spectrum(1.f), towards, Spectrum(1 - kShare));
-    }
 };
 
 // Of one path, whichever end it started from.

@@ -39,6 +39,30 @@ light sky { luminance 100 nits }
     for (std::size_t i = 9; i < 13; ++i) CHECK(with[i] == doctest::Approx(mean));
 }
 
+// Where light comes in by the side that is seen, walks towards it find it; where it shines through, they miss it.
+TEST_CASE("as many walks in solids are drawn towards the surface as find light there") {
+    const auto shareOf = [](const std::string& rest) {
+        const auto scene = TestScene::parse("scene 1\nfilm { size 64 64 }\n"
+                                            "camera { from 0 0 4; look-at 0 0 0; fov 30 deg }\n"
+                                            "material stone subsurface { reflectance 0.6; mean-free-path 5 cm; "
+                                            "boundary diffuse }\n" +
+                                            rest);
+        REQUIRE(scene.report() == "");
+        const LightSampler lights(scene.scene().lights);
+        const PathContext context{scene.scene(), lights, scene.settings()};
+        const RecordingFilm film(scene.built().film, 2);
+        const RenderState state(film.bounds(), 0, 0);
+        const TileFunction render = kernelFor(scene.scene().effects).render;
+        const LookAhead ahead = lookAhead(context, render, film, state, [] { return false; });
+        return ahead.pulled.of(*scene.scene().media.front());
+    };
+    CHECK(shareOf("shape sphere { radius 1; material stone }\nlight sky") == 0.9f);
+    CHECK(shareOf("shape box { min -2 -2 -0.1; max 2 2 0; material stone }\n"
+                  "light quad { size 1 1; luminance 10000 nits; transform { look-at 0 0 -4  0 0 0 } }") <= 0.25f);
+    // Nothing is known where nothing is seen.
+    CHECK(shareOf("shape sphere { center 0 0 20; radius 1; material stone }\nlight sky") == PulledShares::kUnknown);
+}
+
 TEST_CASE("how open a scene is") {
     const auto openOf = [](const std::string& shapes) {
         const auto scene = TestScene::parse("scene 1\nfilm { size 40 40 }\nlight sky\n"
