@@ -23,6 +23,7 @@ foreach(sibling geometry lights cameras film media materials textures transport 
 endforeach()
 list(APPEND allowed_media volumes)
 list(APPEND allowed_textures io)
+list(APPEND allowed_light_sampling guiding)
 set(allowed_modules textures)
 # Light transport, from what every path does to the render of a picture. A technique for caustics may use those that are
 # planned before it.

@@ -106,19 +106,34 @@ std::uint32_t LightSampler::find(const Light* light, std::uint32_t part) const n
     return places_[found->second.first + part];
 }
 
+bool LightSampler::hasGroups() const {
+    const std::size_t far = farInSight_ ? farAmount_.size() : 0;
+    return far + (tree_ ? tree_->branches() : 0) > 1;
+}
+
+std::optional<std::size_t> LightSampler::groupOf(const Light* light, std::uint32_t part) const noexcept {
+    const std::uint32_t i = find(light, part);
+    if (i == kNone) return std::nullopt;
+    if (i < near_) return tree_->branchOf(i);
+    if (!farInSight_) return std::nullopt;
+    return LightArrival::kBranches + i - near_;
+}
+
 // Of the picks, to lights in the tree.
-float LightSampler::nearShare(const Receiver& at) const noexcept {
+float LightSampler::nearShare(const Receiver& at, const Factors* arrives) const noexcept {
     if (near_ == lights_.size()) return 1;
     if (near_ == 0) return 0;
-    const float near = tree_->irradiance(at), all = near + farIrradiance(at);
+    const float near = tree_->irradiance(at, arrives ? arrives->data() : nullptr);
+    const float all = near + farIrradiance(at, arrives);
     return all > 0 ? std::clamp(near / all, kLeastShare, 1 - kLeastShare) : 0.5f;
 }
 
 // In a room a sky gives what comes in by the windows.
-float LightSampler::farIrradiance(const Receiver& at) const noexcept {
+float LightSampler::farIrradiance(const Receiver& at, const Factors* arrives) const noexcept {
     if (!farInSight_) return farIrradiance_;
     float sum = 0;
-    for (std::size_t i = 0; i < farAmount_.size(); ++i) sum += farAmount_[i] * inSight(i, at);
+    for (std::size_t i = 0; i < farAmount_.size(); ++i)
+        sum += farAmount_[i] * inSight(i, at) * (arrives ? (*arrives)[LightArrival::kBranches + i] : 1);
     return sum;
 }
 
@@ -129,7 +144,7 @@ float LightSampler::inSight(std::size_t i, const Receiver& at) const noexcept {
 
 // A surface that turns its back on the sun need not ask for it, and in a room the sun lies behind walls unless a window
 // shows it.
-LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexcept {
+LightSampler::FarShares LightSampler::farShares(const Receiver& at, const Factors* arrives) const noexcept {
     // So much of the sky in sight is as good as all of it for the half that is shared evenly: what is seen of it may be
     // the brightest part.
     constexpr float kEnough = 0.1f;
@@ -137,7 +152,7 @@ LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexce
     float seen = 0, total = 0;
     const std::size_t count = farAmount_.size();
     for (std::size_t i = 0; i < count; ++i) {
-        shares[i] = inSight(i, at);
+        shares[i] = inSight(i, at) * (arrives ? (*arrives)[LightArrival::kBranches + i] : 1);
         even[i] = std::min(shares[i], kEnough);
         seen += even[i];
         total += shares[i] * farAmount_[i];
@@ -149,9 +164,9 @@ LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexce
     return shares;
 }
 
-PickedLight LightSampler::pickFar(double u, float share, const Receiver& at) const noexcept {
+PickedLight LightSampler::pickFar(double u, float share, const Receiver& at, const Factors* arrives) const noexcept {
     if (farInSight_ && farAmount_.size() > 1) {
-        const FarShares shares = farShares(at);
+        const FarShares shares = farShares(at, arrives);
         std::uint32_t last = 0;
         for (std::uint32_t i = 0; i < farAmount_.size(); ++i) {
             if (!(shares[i] > 0)) continue;
@@ -165,36 +180,39 @@ PickedLight LightSampler::pickFar(double u, float share, const Receiver& at) con
     return picked(near_ + i, share * farProbability_[i]);
 }
 
-PickedLight LightSampler::pick(float u, const Receiver& at, const ScatterView& view) const noexcept {
+PickedLight LightSampler::pick(float u, const Receiver& at, const ScatterView& view,
+                               const LightArrival* arrival) const noexcept {
     if (lights_.size() == 1) return picked(0, 1);
-    const float share = nearShare(at);
+    const Factors* const arrives = arrival ? arrival->at(at) : nullptr;
+    const float share = nearShare(at, arrives);
     const auto border = static_cast<double>(share);
     const double x = refined(u, at.p);
-    if (!(x < border)) return pickFar((x - border) / (1 - border), 1 - share, at);
-    const LightTree::Pick p = tree_->pick(x / border, at, view);
+    if (!(x < border)) return pickFar((x - border) / (1 - border), 1 - share, at, arrives);
+    const LightTree::Pick p = tree_->pick(x / border, at, view, arrives ? arrives->data() : nullptr);
     return picked(p.light, share * p.probability);
 }
 
-float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at, const ScatterView& view) const noexcept {
+float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at, const ScatterView& view,
+                                  const Factors* arrives) const noexcept {
     if (i == kNone) return 0;
     if (lights_.size() == 1) return 1;
-    const float share = nearShare(at);
-    if (i < near_) return share * tree_->probability(i, at, view);
+    const float share = nearShare(at, arrives);
+    if (i < near_) return share * tree_->probability(i, at, view, arrives ? arrives->data() : nullptr);
     const bool choosing = farInSight_ && farAmount_.size() > 1;
-    return (1 - share) * (choosing ? farShares(at)[i - near_] : farProbability_[i - near_]);
+    return (1 - share) * (choosing ? farShares(at, arrives)[i - near_] : farProbability_[i - near_]);
 }
 
-float LightSampler::probability(const Light* light, std::uint32_t part, const Receiver& at,
-                                const ScatterView& view) const noexcept {
+float LightSampler::probability(const Light* light, std::uint32_t part, const Receiver& at, const ScatterView& view,
+                                const LightArrival* arrival) const noexcept {
     // The one light of most scenes, without a search.
     if (lights_.size() == 1 && light == lights_[0].light && part == lights_[0].part) return 1;
-    return probabilityOf(find(light, part), at, view);
+    return probabilityOf(find(light, part), at, view, arrival ? arrival->at(at) : nullptr);
 }
 
-float LightSampler::probability(const MediumEmission* emission, const Receiver& at,
-                                const ScatterView& view) const noexcept {
+float LightSampler::probability(const MediumEmission* emission, const Receiver& at, const ScatterView& view,
+                                const LightArrival* arrival) const noexcept {
     const auto found = emitters_.find(emission);
-    return found != emitters_.end() ? probability(found->second, 0, at, view) : 0;
+    return found != emitters_.end() ? probability(found->second, 0, at, view, arrival) : 0;
 }
 
 PickedLight LightSampler::pickAlong(float u, const Ray& ray, RayExtent extent) const noexcept {

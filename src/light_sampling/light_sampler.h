@@ -1,6 +1,7 @@
 // Which light next-event estimation samples at a place.
 #pragma once
 
+#include "light_sampling/light_arrival.h"
 #include "light_sampling/light_tree.h"
 #include "render/integrator.h"
 #include "render/light.h"
@@ -46,11 +47,18 @@ class LightSampler {
     // Whether a ScatterView makes a difference.
     bool usesLobes() const { return near_ > 1; }
     // For light that arrives at a receiver and is scattered. Requires !empty(); u in [0, 1).
-    PickedLight pick(float u, const Receiver&, const ScatterView& = {}) const noexcept;
+    // What is known of walls may be left out, but for all that is asked of one place.
+    PickedLight pick(float u, const Receiver&, const ScatterView& = {}, const LightArrival* = nullptr) const noexcept;
     // Probability with which a part of `light`, one of the scene's, is picked there.
-    float probability(const Light* light, std::uint32_t part, const Receiver&, const ScatterView& = {}) const noexcept;
+    float probability(const Light* light, std::uint32_t part, const Receiver&, const ScatterView& = {},
+                      const LightArrival* = nullptr) const noexcept;
     // That of the light which samples this emission; 0 if none does.
-    float probability(const MediumEmission* emission, const Receiver&, const ScatterView& = {}) const noexcept;
+    float probability(const MediumEmission* emission, const Receiver&, const ScatterView& = {},
+                      const LightArrival* = nullptr) const noexcept;
+    // In LightArrival::Factors; nothing for what is never picked.
+    std::optional<std::size_t> groupOf(const Light*, std::uint32_t part) const noexcept;
+    // Whether there is more than one.
+    bool hasGroups() const;
     // The same for light that scatters somewhere on a piece of a ray: lights far away only where there are no others.
     PickedLight pickAlong(float u, const Ray&, RayExtent) const noexcept;
     float probabilityAlong(const Light* light, std::uint32_t part, const Ray&, RayExtent) const noexcept;
@@ -71,17 +79,18 @@ class LightSampler {
     void weighFar(const std::vector<double>& amounts);
     void number(const std::vector<std::unique_ptr<const Light>>&);
     std::uint32_t find(const Light*, std::uint32_t part) const noexcept;
-    float nearShare(const Receiver&) const noexcept;
-    float farIrradiance(const Receiver&) const noexcept;
+    using Factors = LightArrival::Factors;
+    float nearShare(const Receiver&, const Factors*) const noexcept;
+    float farIrradiance(const Receiver&, const Factors*) const noexcept;
     float inSight(std::size_t far, const Receiver&) const noexcept; // how much of a light far away, 0 … 1
     static constexpr std::size_t kMostWeighed = 8; // of far lights: those that a receiver is asked about
     using FarShares = std::array<float, kMostWeighed>;
-    FarShares farShares(const Receiver&) const noexcept; // Requires farInSight_
-    PickedLight pickFar(double u, float share, const Receiver&) const noexcept;
+    FarShares farShares(const Receiver&, const Factors*) const noexcept; // Requires farInSight_
+    PickedLight pickFar(double u, float share, const Receiver&, const Factors*) const noexcept;
     PickedLight picked(std::uint32_t i, float probability) const {
         return {lights_[i].light, lights_[i].part, probability};
     }
-    float probabilityOf(std::uint32_t i, const Receiver&, const ScatterView&) const noexcept;
+    float probabilityOf(std::uint32_t i, const Receiver&, const ScatterView&, const Factors*) const noexcept;
 
     std::vector<Source> lights_; // those in the tree, in its order, then those far away
     std::uint32_t near_ = 0;     // how many are in the tree

@@ -27,6 +27,11 @@ Eight sinDifference(Eight cosA, Eight sinA, Eight cosB, Eight sinB) {
     return select(cosA.v >= cosB.v, Eight(0.f), sinA * cosB - cosA * sinB);
 }
 Eight sineOf(Eight cosine) { return sqrt(max(Eight(0.f), (Eight(1.f) - cosine) * (Eight(1.f) + cosine))); }
+Eight eightOf(const float* values) {
+    Float8 result;
+    std::copy_n(values, 8, reinterpret_cast<float*>(&result));
+    return Eight(result);
+}
 float sineOf(float cosine) { return std::sqrt(std::max(0.f, (1 - cosine) * (1 + cosine))); }
 Eight clamped(Eight x, float least, float most) { return min(max(x, Eight(least)), Eight(most)); }
 
@@ -96,8 +101,9 @@ Spectrum LightTree::importance(const Node& node, const Along& along) noexcept {
     return select(node.power > Eight(0.f).v, clamped(value, kLeastImportance, kMostImportance), Eight(0.f));
 }
 
-template <typename Place> Spectrum LightTree::shares(const Node& node, const Place& at) noexcept {
+template <typename Place> Spectrum LightTree::shares(const Node& node, const Place& at, const float* factors) noexcept {
     Eight parts = importance(node, at);
+    if (factors) parts *= eightOf(factors);
     const float most = maxLane(parts);
     // A light that the receiver all but touches must not round away another one, which may be the one that is seen.
     // Where none can give anything it does not matter.
@@ -108,10 +114,11 @@ template <typename Place> Spectrum LightTree::shares(const Node& node, const Pla
     return parts / sum(parts);
 }
 
-template <typename Place> LightTree::Pick LightTree::pickAt(double u, const Place& at) const noexcept {
+template <typename Place>
+LightTree::Pick LightTree::pickAt(double u, const Place& at, const float* factors) const noexcept {
     float probability = 1;
-    for (const Node* node = nodes_.data();;) {
-        const Eight share = shares(*node, at);
+    for (const Node* node = nodes_.data();; factors = nullptr) {
+        const Eight share = shares(*node, at, factors);
         double before = 0, own = 0;
         std::uint32_t slot = 0;
         for (std::uint32_t i = 0; i < 8; ++i) {
@@ -130,7 +137,8 @@ template <typename Place> LightTree::Pick LightTree::pickAt(double u, const Plac
 }
 
 // From the light up to the root, then down again, so that it rounds as in pickAt.
-template <typename Place> float LightTree::probabilityAt(std::uint32_t light, const Place& at) const noexcept {
+template <typename Place>
+float LightTree::probabilityAt(std::uint32_t light, const Place& at, const float* factors) const noexcept {
     std::array<Branch, light_tree::Builder::kMaxDepth> way;
     std::size_t length = 0;
     for (Branch b = places_[light];; b = nodes_[b.node].parent) {
@@ -140,17 +148,19 @@ template <typename Place> float LightTree::probabilityAt(std::uint32_t light, co
     float probability = 1;
     while (length-- > 0) {
         const Branch b = way[length];
-        probability *= shares(nodes_[b.node], at)[static_cast<int>(b.slot)];
+        probability *= shares(nodes_[b.node], at, b.node == 0 ? factors : nullptr)[static_cast<int>(b.slot)];
     }
     return probability;
 }
 
-LightTree::Pick LightTree::pick(double u, const Receiver& at, const ScatterView& view) const noexcept {
-    return view.glossy() ? pickAt(u, GlossyReceiver(at, view)) : pickAt(u, at);
+LightTree::Pick LightTree::pick(double u, const Receiver& at, const ScatterView& view,
+                                const float* factors) const noexcept {
+    return view.glossy() ? pickAt(u, GlossyReceiver(at, view), factors) : pickAt(u, at, factors);
 }
 
-float LightTree::probability(std::uint32_t light, const Receiver& at, const ScatterView& view) const noexcept {
-    return view.glossy() ? probabilityAt(light, GlossyReceiver(at, view)) : probabilityAt(light, at);
+float LightTree::probability(std::uint32_t light, const Receiver& at, const ScatterView& view,
+                             const float* factors) const noexcept {
+    return view.glossy() ? probabilityAt(light, GlossyReceiver(at, view), factors) : probabilityAt(light, at, factors);
 }
 
 LightTree::Pick LightTree::pick(double u, const Ray& ray, RayExtent extent) const noexcept {
@@ -162,8 +172,22 @@ float LightTree::probability(std::uint32_t light, const Ray& ray, RayExtent exte
 }
 
 // Between a light that emits all around, 1/4π, and one that faces the receiver, 1/π.
-float LightTree::irradiance(const Receiver& at) const noexcept {
-    return std::min(sum(importance(nodes_[0], at)), kMostImportance) * (0.5f * kInvPi);
+float LightTree::irradiance(const Receiver& at, const float* factors) const noexcept {
+    Eight parts = importance(nodes_[0], at);
+    if (factors) parts *= eightOf(factors);
+    return std::min(sum(parts), kMostImportance) * (0.5f * kInvPi);
+}
+
+std::size_t LightTree::branches() const {
+    std::size_t count = 0;
+    for (int slot = 0; slot < 8; ++slot) count += nodes_[0].power[slot] > 0;
+    return count;
+}
+
+std::size_t LightTree::branchOf(std::uint32_t light) const {
+    Branch at = places_[light];
+    while (at.node != 0) at = nodes_[at.node].parent;
+    return at.slot;
 }
 
 LightTree::LightTree(std::span<const LightBounds> lights, const StopFlag& stop) : places_(lights.size()) {

@@ -30,14 +30,19 @@ class LightTree {
 
     // u in [0, 1), with more digits than the least probability. A surface whose lobes are told prefers lights that they
     // see; Requires a receiver with a normal, on the side of the view.
-    Pick pick(double u, const Receiver&, const ScatterView& = {}) const noexcept;
-    float probability(std::uint32_t light, const Receiver&, const ScatterView& = {}) const noexcept;
+    // `factors`: of the root's eight branches, > 0: what they may give there is multiplied by them; null: 1.
+    Pick pick(double u, const Receiver&, const ScatterView& = {}, const float* factors = nullptr) const noexcept;
+    float probability(std::uint32_t light, const Receiver&, const ScatterView& = {},
+                      const float* factors = nullptr) const noexcept;
     // For a piece of a ray on which the light is to scatter.
     Pick pick(double u, const Ray&, RayExtent) const noexcept;
     float probability(std::uint32_t light, const Ray&, RayExtent) const noexcept;
 
     // Estimate of the irradiance of a receiver by all lights, W/m² as the lights' power.
-    float irradiance(const Receiver&) const noexcept;
+    float irradiance(const Receiver&, const float* factors = nullptr) const noexcept;
+    // Of the root, and which of them a light hangs from.
+    std::size_t branches() const;
+    std::size_t branchOf(std::uint32_t light) const;
     // Number of nodes from the root to the deepest light.
     int depth() const { return depth_; }
 
@@ -75,9 +80,10 @@ class LightTree {
     template <typename Scatters> static Spectrum weigh(const Node&, const Receiver&, Scatters&&) noexcept;
     static Spectrum importance(const Node&, const Along&) noexcept;
     // The probability of each branch.
-    template <typename Place> static Spectrum shares(const Node&, const Place&) noexcept;
-    template <typename Place> Pick pickAt(double u, const Place&) const noexcept;
-    template <typename Place> float probabilityAt(std::uint32_t light, const Place&) const noexcept;
+    template <typename Place> static Spectrum shares(const Node&, const Place&, const float* factors) noexcept;
+    template <typename Place> Pick pickAt(double u, const Place&, const float* factors = nullptr) const noexcept;
+    template <typename Place>
+    float probabilityAt(std::uint32_t light, const Place&, const float* factors = nullptr) const noexcept;
 
     std::vector<Node> nodes_;
     std::vector<Branch> places_; // of the lights

@@ -43,7 +43,8 @@ template <EffectBits E> void Emission<E>::addSurface(const SurfaceHit& hit, Vec3
     float lightPdf = 0;
     if (rivalled(walk_, last_))
         lightPdf = lightShare<E>(last_) *
-                   context.lights.probability(hit.light, hit.light->partOf(hit), last_.receiver, last_.scatters) *
+                   context.lights.probability(hit.light, hit.light->partOf(hit), last_.receiver, last_.scatters,
+                                              context.arrival) *
                    hit.light->pdfSolidAngle(last_.receiver, hit, path.time);
     estimate.checkDensities(lightPdf, path.bsdfPdf);
     if constexpr (kLightPaths)
@@ -68,7 +69,8 @@ template <EffectBits E> void Emission<E>::leaveScene(const Ray& ray) {
         if (!light->visible().has(ray.kind)) continue;
         float lightPdf = 0;
         if (rivalled(walk_, last_))
-            lightPdf = lightShare<E>(last_) * context.lights.probability(light, 0, last_.receiver, last_.scatters) *
+            lightPdf = lightShare<E>(last_) *
+                       context.lights.probability(light, 0, last_.receiver, last_.scatters, context.arrival) *
                        light->pdfEscaped(last_.receiver, direction, path.time);
         estimate.checkDensities(lightPdf, path.bsdfPdf);
         const Spectrum arriving = light->escaped(direction, path.lambda, path.time);
@@ -98,7 +100,8 @@ template <EffectBits E> class Emission<E>::OfMedia final : public EmissionListen
             return;
         float lightPdf = 0;
         if (rivalled(walk_, last_))
-            lightPdf = lightShare<E>(last_) * context.lights.probability(&emission, last_.receiver, last_.scatters) *
+            lightPdf = lightShare<E>(last_) *
+                       context.lights.probability(&emission, last_.receiver, last_.scatters, context.arrival) *
                        emission.pdfSolidAngle(last_.receiver.p, ray_.origin + ray_.direction * t);
         estimate.checkDensity(lightPdf);
         Spectrum arriving = beta * amount * scatteringWeight(walk_, lightPdf, density);

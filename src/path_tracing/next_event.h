@@ -106,7 +106,10 @@ void NextEvent<E>::atSurface(const SurfaceHit& hit, const Bsdf& bsdf, const EyeD
         if (u >= share) return;
         u /= share;
     }
-    PickedLight picked = context.lights.pick(std::min(u, kOneMinusEpsilon), last_.receiver, last_.scatters);
+    PickedLight picked =
+        context.lights.pick(std::min(u, kOneMinusEpsilon), last_.receiver, last_.scatters, context.arrival);
+    if (estimate.observer) [[unlikely]]
+        estimate.observer->asks(last_.receiver, picked.light, picked.part);
     picked.probability *= share;
     auto light = picked.light->sample(last_.receiver, picked.part, sample.light, path.lambda, path.time);
     if (!light) return;

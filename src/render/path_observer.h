@@ -43,6 +43,8 @@ class PathObserver {
     virtual void turns(Vec3 /*w*/, const PhaseFunction&, float /*phase*/, float /*pdf*/,
                        const Spectrum& /*beta*/) noexcept {}
 
+    // Next-event estimation asks for a part of a light at a surface. samples() follows if its light arrives.
+    virtual void asks(const Receiver&, const Light*, std::uint32_t /*part*/) noexcept {}
     // What light is made of, before gathers() is called. Sampled on a light and scattered here; `pdf`: of the sample,
     // with the choice of the light.
     virtual void samples(const void* /*source*/, const LightSample&, const BsdfEval&, float /*pdf*/) noexcept {}

@@ -3,11 +3,13 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "base/work.h"
+#include "light_sampling/light_sampler.h"
 #include "math/hash.h"
 #include "math/warp.h"
 #include "render/camera.h"
 #include "render/film.h"
 #include "render/material.h"
+#include "render/path_observer.h"
 #include "render/render_state.h"
 #include "render/scene.h"
 
@@ -176,6 +178,73 @@ constexpr std::uint64_t kPlan = 0x706c616e;    // "plan"
 // scene that absorbs nearly everything they would go on to no end.
 constexpr float kNoRoulette = 1e6f;
 
+// Who listens to the first look at a frame.
+struct Listeners {
+    WalkPilot walks;
+    LightPilot lights;
+};
+
+class TeeRecorder final : public SampleRecorder {
+  public:
+    void add(std::unique_ptr<SampleRecorder> to) { to_.push_back(std::move(to)); }
+
+    void pixel(int x, int y, int r) noexcept override { tell(&SampleRecorder::pixel, x, y, r); }
+    void start(const Ray& ray, const Wavelengths& w) noexcept override { tell(&SampleRecorder::start, ray, w); }
+    void keep(const Spectrum& s, const Sensor& sensor, double factor) noexcept override {
+        for (const auto& r : to_) r->keep(s, sensor, factor);
+    }
+    void drop() noexcept override { tell(&SampleRecorder::drop); }
+    void pixelDone(double seconds) noexcept override { tell(&SampleRecorder::pixelDone, seconds); }
+    void arrives(const SurfaceHit& hit, const Spectrum& beta) noexcept override {
+        tell(&SampleRecorder::arrives, hit, beta);
+    }
+    void collides(Vec3 p, const Spectrum& beta) noexcept override { tell(&SampleRecorder::collides, p, beta); }
+    void walked(const Medium& medium, float likelihood) noexcept override {
+        tell(&SampleRecorder::walked, medium, likelihood);
+    }
+    void scatters(const SurfaceHit&, Lobes, const Spectrum&, const BsdfSample*) noexcept override {}
+    void asks(const Receiver& at, const Light* light, std::uint32_t part) noexcept override {
+        tell(&SampleRecorder::asks, at, light, part);
+    }
+    void samples(const void* source, const LightSample& light, const BsdfEval& eval, float pdf) noexcept override {
+        tell(&SampleRecorder::samples, source, light, eval, pdf);
+    }
+    void gathers(const Spectrum& light, const void* source, bool passing) noexcept override {
+        tell(&SampleRecorder::gathers, light, source, passing);
+    }
+
+  private:
+    template <typename Event, typename... Args> void tell(Event event, const Args&... args) noexcept {
+        for (const auto& recorder : to_) ((*recorder).*event)(args...);
+    }
+    std::vector<std::unique_ptr<SampleRecorder>> to_;
+};
+
+// The film, and who listens of those for whom there is anything to hear.
+class HeardFilm final : public FilmDecorator {
+  public:
+    HeardFilm(const PathContext& context, Film& film, Listeners& to)
+        : FilmDecorator(film), film_(film), to_(to), walks_(WalkPilot::wanted(context.scene)),
+          lights_(context.settings.technique.lightChoice == Technique::LightChoice::tree && context.how.nextEvent &&
+                  context.lights.hasGroups()) {}
+
+    bool listens() const { return walks_ || lights_; }
+    void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
+        film_.add(x, y, replicate, sum, samples);
+    }
+    std::unique_ptr<SampleRecorder> makeRecorder() override {
+        auto all = std::make_unique<TeeRecorder>();
+        if (walks_) all->add(to_.walks.recorder());
+        if (lights_) all->add(to_.lights.recorder());
+        return all;
+    }
+
+  private:
+    Film& film_;
+    Listeners& to_;
+    bool walks_, lights_;
+};
+
 class FramePilot {
   public:
     FramePilot(const PathContext& context, TileFunction render, const Film& film, const std::function<bool()>& stop)
@@ -187,11 +256,13 @@ class FramePilot {
         if (roulette == Technique::Roulette::throughput) result_.roulette = RouletteReference::constant(1);
         if (roulette == Technique::Roulette::off) result_.roulette = RouletteReference::constant(kNoRoulette);
         const Stopwatch watch;
-        WalkPilot walks;
-        PilotFilm pilot = look(WalkPilot::wanted(context_.scene) ? &walks : nullptr);
+        Listeners heard;
+        PilotFilm pilot = look(heard);
         describe(pilot, watch.seconds());
         if (roulette == Technique::Roulette::pilot) result_.roulette = RouletteReference(pilot);
-        result_.pulled = walks.shares(context_.scene, RouletteReference(pilot));
+        const RouletteReference shown(pilot);
+        result_.pulled = heard.walks.shares(context_.scene, shown);
+        result_.arrival = heard.lights.learn(context_.lights, [&](int x, int y) { return shown.scale(x, y); });
         if (context_.settings.adaptive && !stop_()) result_.plan = plan();
         for (std::size_t i = 0; i < state.pixelTileCount(); ++i) {
             const PixelBounds pixels = state.pixels(i);
@@ -209,7 +280,7 @@ class FramePilot {
     PathContext reseeded(std::uint64_t key) const {
         PathContext context = context_;
         context.settings.seed = combine64(context_.settings.seed, key);
-        context.pulled = &result_.pulled;
+        result_.giveTo(context);
         return context;
     }
 
@@ -222,11 +293,11 @@ class FramePilot {
         return c.vertices + c.shadowRays;
     }
 
-    PilotFilm look(WalkPilot* walks) {
+    PilotFilm look(Listeners& to) {
         const PathContext context = reseeded(kPilot);
         PilotFilm pilot(frame_, context.settings.seed);
-        const std::unique_ptr<Film> heard = walks ? walks->listen(pilot) : nullptr;
-        Film& film = heard ? *heard : pilot;
+        HeardFilm heard(context, pilot, to);
+        Film& film = heard.listens() ? static_cast<Film&>(heard) : pilot;
         parallelFor(static_cast<std::size_t>(pilot.rows()), [&](std::size_t i) {
             const int row = static_cast<int>(i);
             for (int column = 0; column < pilot.columns() && !stop_(); ++column)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "caustics/shared/kernel_jobs.h"
+#include "light_sampling/light_arrival.h"
 #include "render/integrator.h"
 #include "rendering/sampling_plan.h"
 #include "transport/roulette.h"
@@ -30,12 +31,19 @@ class RenderState;
 // rendered.
 struct LookAhead {
     RouletteReference roulette;
-    PulledShares pulled;           // of walks in solids
+    PulledShares pulled; // of walks in solids
+    std::optional<LightArrival> arrival;
     SamplingPlan plan;             // even unless the settings ask for more
     std::vector<double> tileCosts; // of a sample in each tile of the state, in rays
     std::uint64_t rays = 0;        // that it took
     FramePreview first;
     double raysOfPath = 0; // of a camera path, in the mean over the frame
+
+    // Of what it learnt, all that paths ask.
+    void giveTo(PathContext& context) const {
+        context.pulled = &pulled;
+        context.arrival = arrival ? &*arrival : nullptr;
+    }
 };
 
 // Rough, and no longer the same from one run to the next, if `stop` says so on the way.

@@ -108,7 +108,7 @@ class RenderJob {
         statistics_.pilotRays = plans_.rays;
         statistics_.pilotSeconds = plans_.seconds;
         statistics_.pilotCoreSeconds = plans_.coreSeconds;
-        context_.pulled = &plans_.ahead.pulled;
+        plans_.ahead.giveTo(context_);
         plans_.caustics.giveTo(context_);
         guideBy(plans_.guide.get(), context_);
         if (plans_.caustics.any()) render_ = kernel_.lightPaths.render;

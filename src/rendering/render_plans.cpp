@@ -58,7 +58,7 @@ class RenderPlanner {
         }
         const Stopwatch watch;
         PathContext context = in_.context;
-        context.pulled = &result_.ahead.pulled;
+        result_.ahead.giveTo(context);
         result_.caustics.giveTo(context);
         const TileFunction render = result_.caustics.any() ? in_.lightPaths.render : in_.render;
         GuidePlan plan = planGuide(context, render, in_.film, result_.ahead.roulette, size, in_.stop);
@@ -114,7 +114,7 @@ class RenderPlanner {
         return [this](int size, const std::function<bool()>& stop) {
             PathContext context = in_.context;
             context.settings.pilot = size;
-            context.pulled = &result_.ahead.pulled;
+            result_.ahead.giveTo(context);
             return planCaustics(context, in_.film, in_.lightPaths, result_.ahead.roulette, stop);
         };
     }

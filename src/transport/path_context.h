@@ -11,6 +11,7 @@
 namespace abbe {
 
 class GlintPlan;
+class LightArrival;
 struct LightPathPlan;
 class LightSampler;
 class ManifoldListener;
@@ -41,6 +42,7 @@ struct PathContext {
     const GlintPlan* glints = nullptr;        // likewise by probes
     const PathGuide* guide = nullptr;         // where camera paths find light; null: as surfaces scatter
     const RadianceCache* distances = nullptr; // its cache, where they draw distances in media by it
+    const LightArrival* arrival = nullptr;    // of lights, for choosing them; null: as if nothing was in their way
     const PulledShares* pulled = nullptr;     // of walks in solids; null: PulledShares::kUnknown of all
     // Set: what is in hand is left where it is, and does not count (PathCounters::left).
     const StopFlag* stop = &kNeverStop;

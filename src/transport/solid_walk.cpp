@@ -80,19 +80,6 @@ class WalkRecorder final : public SampleRecorder {
     std::array<Spectrum, kWalkShares.size()> shown_{}; // by each
 };
 
-class WalkFilm final : public FilmDecorator {
-  public:
-    WalkFilm(WalkPilot& to, Film& film) : FilmDecorator(film), to_(to), film_(film) {}
-    void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
-        film_.add(x, y, replicate, sum, samples);
-    }
-    std::unique_ptr<SampleRecorder> makeRecorder() override { return std::make_unique<WalkRecorder>(to_); }
-
-  private:
-    WalkPilot& to_;
-    Film& film_;
-};
-
 // Of all paths that walked in one medium first.
 struct WalkSums {
     double paths = 0, shows = 0;
@@ -118,7 +105,7 @@ bool WalkPilot::wanted(const Scene& scene) {
     });
 }
 
-std::unique_ptr<Film> WalkPilot::listen(Film& film) { return std::make_unique<WalkFilm>(*this, film); }
+std::unique_ptr<SampleRecorder> WalkPilot::recorder() { return std::make_unique<WalkRecorder>(*this); }
 
 void WalkPilot::add(const std::vector<Path>& paths, std::uint64_t workOfOthers) {
     const std::lock_guard lock(mutex_);

@@ -16,8 +16,8 @@
 
 namespace abbe {
 
-class Film;
 class RouletteReference;
+class SampleRecorder;
 struct Scene;
 
 // How many of the walks in each medium are drawn towards the surface (SurfacePull).
@@ -117,8 +117,7 @@ class WalkPilot {
     // Whether the scene has solids in which walks can be drawn so.
     static bool wanted(const Scene&);
 
-    // The film, whose looks are listened to: both outlive it.
-    std::unique_ptr<Film> listen(Film&);
+    std::unique_ptr<SampleRecorder> recorder();
     PulledShares shares(const Scene&, const RouletteReference&) const;
 
     static constexpr std::array<float, 5> kShares{0, 0.25f, 0.5f, 0.75f, 0.9f};

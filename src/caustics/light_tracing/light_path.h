@@ -307,7 +307,9 @@ template <EffectBits E>
 double LightPath<E>::neeDensity(const EmittedRay& start, const Receiver& from, Vec3 direction,
                                 const ScatterView& scatters) const {
     if (!walk_.context.how.nextEvent) return 0;
-    const auto picked = static_cast<double>(walk_.context.lights.probability(start.light, start.part, from, scatters));
+    const PathContext& context = walk_.context;
+    const auto picked =
+        static_cast<double>(context.lights.probability(start.light, start.part, from, scatters, context.arrival));
     if (start.deltaPosition || start.deltaDirection) return picked;
     const float time = walk_.path.time;
     const float pdf = start.density.distant

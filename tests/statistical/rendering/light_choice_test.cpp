@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <numeric>
 #include <vector>
 
 namespace abbe::test {
@@ -71,9 +72,8 @@ TestImage renderBy(const TestScene& scene, Technique::LightChoice choice, std::u
     return render(scene, settings);
 }
 
-// Relative variance of the typical pixel's mean, by the replicates: the median over the pixels, of which those that a
-// light all but touches have any.
-double spread(const TestImage& image) {
+// Relative variances of the pixels' means, by the replicates.
+std::vector<double> spreads(const TestImage& image) {
     std::vector<double> all;
     const PixelBounds b = image.film.bounds();
     for (int y = b.y0; y < b.y1; ++y)
@@ -81,6 +81,11 @@ double spread(const TestImage& image) {
             const Estimate e = image.film.pixel(x, y);
             all.push_back(e.variance / square(e.mean));
         }
+    return all;
+}
+// That of the typical pixel: the median, as those that a light all but touches have any.
+double spread(const TestImage& image) {
+    std::vector<double> all = spreads(image);
     std::ranges::nth_element(all, all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2));
     return all[all.size() / 2];
 }
@@ -96,6 +101,34 @@ TEST_CASE("a thousand lights of all kinds: by the tree as by power, with less no
     const double gain = 4 * spread(byPower) / spread(byTree);
     MESSAGE("variance per sample: ", gain, " times that of the tree");
     CHECK(gain > 1.8);
+}
+
+// What the look at the frame finds of walls changes the noise, and nothing else.
+TEST_CASE("lamps on both sides of a wall: chosen by what arrives as by power, with less noise") {
+    std::string text = R"(scene 1
+film { size 64 64; filter box 0.5 }
+camera { from 0 9 0.1; look-at 0 0 0; fov 40 deg }
+shape floor quad { points -3 0 3  3 0 3  3 0 -3  -3 0 -3; material diffuse { reflectance 0.6 } }
+shape wall box { min -0.05 0 -3; max 0.05 3 3; material diffuse { reflectance 0.3 } }
+light left sphere { center -1 1.5 0; radius 0.1; power 20 W }
+light right sphere { center 1 1.5 1; radius 0.1; power 60 W }
+light dim point { position 2 1 -1; power 3 W }
+)";
+    const auto scene = TestScene::parse(text);
+    REQUIRE(scene.report() == "");
+    const TestImage byTree = renderBy(scene, tree, 16, 1), byPower = renderBy(scene, power, 64, 2);
+    checkSame(compareImages(byTree.film, byPower.film), 0.03);
+    // The mean of all but the brightest tenth: places that a lamp all but touches have any.
+    const auto typical = [](const TestImage& image) {
+        std::vector<double> all = spreads(image);
+        std::erase_if(all, [](double v) { return !std::isfinite(v); }); // on top of the wall it is dark
+        std::ranges::sort(all);
+        all.resize(all.size() * 9 / 10);
+        return std::accumulate(all.begin(), all.end(), 0.0);
+    };
+    const double gain = 4 * typical(byPower) / typical(byTree);
+    MESSAGE("variance per sample: ", gain, " times that of the tree");
+    CHECK(gain > 3);
 }
 
 // Without places that a light all but touches, where an even choice would converge too slowly to say anything: the

@@ -64,6 +64,43 @@ Lights lightsOf(std::initializer_list<Description> list) {
 
 const Receiver kFloor({0.5f, 0, 0.5f}, {0, 1, 0}, false);
 
+// Of every other group of lights nothing arrives at the floor, nearly, and half of the rest.
+LightArrival behindWalls() {
+    std::vector<SpaceTree::Place> places{{kFloor.p, faceOf(kFloor.n), 0}};
+    const SpaceTree cells(places, 1);
+    LightArrival::Factors factors;
+    for (std::size_t g = 0; g < factors.size(); ++g) factors[g] = g % 2 ? 0.5f : 0.02f;
+    return {cells, std::vector<LightArrival::Factors>(cells.leaves(), factors)};
+}
+
+void checkPicks(const LightSampler& sampler, const Lights& lights, const LightArrival* arrival) {
+    std::vector<std::pair<const Light*, std::uint32_t>> all;
+    std::vector<double> expected;
+    constexpr int picks = 100000;
+    double sum = 0;
+    for (const auto& light : lights)
+        for (std::uint32_t part = 0; part < light->parts(); ++part) {
+            all.emplace_back(light.get(), part);
+            const auto p = static_cast<double>(sampler.probability(light.get(), part, kFloor, {}, arrival));
+            sum += p;
+            expected.push_back(p * picks);
+        }
+    CHECK(sum == doctest::Approx(1).epsilon(1e-5));
+    std::vector<double> observed(all.size(), 0);
+    Random random(7);
+    int different = 0;
+    for (int i = 0; i < picks; ++i) {
+        const PickedLight p = sampler.pick(random.uniform(), kFloor, {}, arrival);
+        different += p.probability != sampler.probability(p.light, p.part, kFloor, {}, arrival);
+        ++observed[static_cast<std::size_t>(std::find(all.begin(), all.end(), std::pair(p.light, p.part)) -
+                                            all.begin())];
+    }
+    CHECK(different == 0);
+    if (all.size() > 1) CHECK(chiSquareTest(observed, expected).pValue > 1e-4);
+    for (const float u : {0.f, 0.5f, kOneMinusEpsilon}) CHECK(sampler.pick(u, kFloor, {}, arrival).probability > 0);
+    CHECK(sampler.needsChoice() == (all.size() > 1));
+}
+
 } // namespace
 
 TEST_CASE("light choice: probabilities sum to one over all parts, and are those of the picks") {
@@ -77,35 +114,32 @@ TEST_CASE("light choice: probabilities sum to one over all parts, and are those 
         lightsOf({{.infinite = true, .irradiance = 10, .sight = 0}, {.infinite = true, .irradiance = 2, .sight = 0}}),
         lightsOf(
             {{.power = 3, .parts = 7}, {.infinite = true, .irradiance = 0.01}, {.irradiance = 0.3}, {.parts = 1}})};
+    const LightArrival walls = behindWalls();
     for (const Lights& lights : cases)
         for (const auto choice : {Technique::LightChoice::tree, Technique::LightChoice::power}) {
             const LightSampler sampler(lights, choice);
-            std::vector<std::pair<const Light*, std::uint32_t>> all;
-            std::vector<double> expected;
-            constexpr int picks = 100000;
-            double sum = 0;
-            for (const auto& light : lights)
-                for (std::uint32_t part = 0; part < light->parts(); ++part) {
-                    all.emplace_back(light.get(), part);
-                    const auto p = static_cast<double>(sampler.probability(light.get(), part, kFloor));
-                    sum += p;
-                    expected.push_back(p * picks);
-                }
-            CHECK(sum == doctest::Approx(1).epsilon(1e-5));
-            std::vector<double> observed(all.size(), 0);
-            Random random(7);
-            int different = 0;
-            for (int i = 0; i < picks; ++i) {
-                const PickedLight p = sampler.pick(random.uniform(), kFloor);
-                different += p.probability != sampler.probability(p.light, p.part, kFloor);
-                ++observed[static_cast<std::size_t>(std::find(all.begin(), all.end(), std::pair(p.light, p.part)) -
-                                                    all.begin())];
-            }
-            CHECK(different == 0);
-            if (all.size() > 1) CHECK(chiSquareTest(observed, expected).pValue > 1e-4);
-            for (const float u : {0.f, 0.5f, kOneMinusEpsilon}) CHECK(sampler.pick(u, kFloor).probability > 0);
-            CHECK(sampler.needsChoice() == (all.size() > 1));
+            for (const LightArrival* const arrival : {static_cast<const LightArrival*>(nullptr), &walls})
+                checkPicks(sampler, lights, arrival);
         }
+}
+
+TEST_CASE("light choice: what is behind walls is picked as much less as less of it arrives") {
+    const Lights lights =
+        lightsOf({{.power = 1, .parts = 1}, {.power = 1, .parts = 1}, {.infinite = true, .irradiance = 0.1}});
+    const LightSampler sampler(lights);
+    const LightArrival walls = behindWalls();
+    const auto of = [&](std::size_t i, const LightArrival* arrival) {
+        return static_cast<double>(sampler.probability(lights[i].get(), 0, kFloor, {}, arrival));
+    };
+    REQUIRE(sampler.hasGroups());
+    CHECK(sampler.groupOf(lights[2].get(), 0) == LightArrival::kBranches);
+    std::size_t hidden = sampler.groupOf(lights[0].get(), 0) == 0u ? 0 : 1;
+    CHECK(of(hidden, &walls) / of(1 - hidden, &walls) ==
+          doctest::Approx(0.04 * of(hidden, nullptr) / of(1 - hidden, nullptr)).epsilon(1e-3));
+    CHECK(of(2, &walls) < 0.2 * of(2, nullptr));
+    // In media nothing is known.
+    CHECK(sampler.probability(lights[2].get(), 0, Receiver(kFloor.p), {}, &walls) ==
+          sampler.probability(lights[2].get(), 0, Receiver(kFloor.p)));
 }
 
 TEST_CASE("light choice: near and far lights each keep a share of the picks") {

@@ -63,6 +63,34 @@ TEST_CASE("as many walks in solids are drawn towards the surface as find light t
     CHECK(shareOf("shape sphere { center 0 0 20; radius 1; material stone }\nlight sky") == PulledShares::kUnknown);
 }
 
+TEST_CASE("of lights behind a wall it is found that they do not arrive, and of others nothing is kept") {
+    const auto arrivalOf = [](const std::string& rest) {
+        const auto scene = TestScene::parse(
+            "scene 1\nfilm { size 128 128 }\ncamera { from 0 9 0.1; look-at 0 0 0; fov 40 deg }\n"
+            "shape floor quad { points -3 0 3  3 0 3  3 0 -3  -3 0 -3; material diffuse { reflectance 0.2 } }\n"
+            "light sphere { center -1 1.5 0; radius 0.1; power 20 W }\n"
+            "light sphere { center 1 1.5 0; radius 0.1; power 20 W }\n" +
+            rest);
+        REQUIRE(scene.report() == "");
+        const LightSampler lights(scene.scene().lights);
+        const PathContext context{scene.scene(), lights, scene.settings()};
+        const RecordingFilm film(scene.built().film, 2);
+        const RenderState state(film.bounds(), 0, 0);
+        const LookAhead ahead = lookAhead(context, kernelFor({}).render, film, state, [] { return false; });
+        const Vec3 left = Vec3(Vec3d(-1, 0, 0) - scene.scene().origin);
+        const Receiver at(left, {0, 1, 0}, false);
+        const LightArrival* const arrival = ahead.arrival ? &*ahead.arrival : nullptr;
+        return std::pair(ahead.arrival.has_value(),
+                         lights.probability(scene.scene().lights[1].get(), 0, at, {}, arrival) /
+                             lights.probability(scene.scene().lights[1].get(), 0, at));
+    };
+    const auto [known, ratio] =
+        arrivalOf("shape box { min -0.05 0 -3; max 0.05 3 3; material diffuse { reflectance 0.2 } }\n");
+    CHECK(known);
+    CHECK(ratio < 0.2f);
+    CHECK(!arrivalOf("").first);
+}
+
 TEST_CASE("how open a scene is") {
     const auto openOf = [](const std::string& shapes) {
         const auto scene = TestScene::parse("scene 1\nfilm { size 40 40 }\nlight sky\n"
