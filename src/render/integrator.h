@@ -126,9 +126,17 @@ struct DroppedSample : SampleId {
     DropCause cause = DropCause::nan;
 };
 
+// How paths are drawn because of what the look at the frame found (docs/decisions/015-light-tree.md and
+// docs/performance.md, "Towards the surface").
+struct LookFindings {
+    bool lightsByArrival = false;                          // how much of them arrives has a say in their choice
+    std::vector<std::pair<std::string, float>> walks = {}; // media of solids, and the share drawn to the surface
+};
+
 // What a render came to.
 struct RenderStatistics : PathTally {
     CausticFindings caustics; // by which it was decided how light is found
+    LookFindings look;
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
     std::uint64_t pilotRays = 0;                   // of looks ahead that are not in the image, of this run alone
     double pilotSeconds = 0;                       // wall clock of these

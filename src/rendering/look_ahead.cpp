@@ -367,6 +367,14 @@ class FramePilot {
 
 } // namespace
 
+LookFindings LookAhead::findings(const Scene& scene) const {
+    LookFindings found{.lightsByArrival = arrival.has_value()};
+    for (const auto& medium : scene.media)
+        if (WalkPilot::serves(scene, *medium))
+            found.walks.emplace_back(scene.mediumUses[medium->number].name, pulled.of(*medium));
+    return found;
+}
+
 LookAhead lookAhead(const PathContext& context, TileFunction render, const Film& film, const RenderState& state,
                     const std::function<bool()>& stop) {
     return FramePilot(context, render, film, stop).run(state);

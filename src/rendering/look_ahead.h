@@ -39,6 +39,7 @@ struct LookAhead {
     FramePreview first;
     double raysOfPath = 0; // of a camera path, in the mean over the frame
 
+    LookFindings findings(const Scene&) const;
     // Of what it learnt, all that paths ask.
     void giveTo(PathContext& context) const {
         context.pulled = &pulled;

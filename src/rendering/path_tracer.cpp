@@ -108,6 +108,7 @@ class RenderJob {
         statistics_.pilotRays = plans_.rays;
         statistics_.pilotSeconds = plans_.seconds;
         statistics_.pilotCoreSeconds = plans_.coreSeconds;
+        statistics_.look = plans_.ahead.findings(context_.scene);
         plans_.ahead.giveTo(context_);
         plans_.caustics.giveTo(context_);
         guideBy(plans_.guide.get(), context_);

@@ -345,6 +345,7 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
         file.set("light_path_plan", lightPathJson(s.statistics.caustics));
     if (s.statistics.caustics.of<GuideFindings>().verdict != GuideFindings::Verdict::undecided)
         file.set("guiding", guideJson(s.statistics.caustics.of<GuideFindings>()));
+    addLook(file, s.statistics.look);
     writeAtomically(path, file.text(true) + "\n");
 }
 

@@ -101,6 +101,7 @@ class JsonReport final : public RenderReport {
             event.set("light_path_plan", lightPathJson(r.caustics));
         if (r.caustics.of<GuideFindings>().verdict != GuideFindings::Verdict::undecided)
             event.set("guiding", guideJson(r.caustics.of<GuideFindings>()));
+        addLook(event, r.look);
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
         emit(std::move(event));

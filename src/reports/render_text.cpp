@@ -351,6 +351,14 @@ Json guideJson(const GuideFindings& f) {
                          {"bytes", static_cast<std::uint64_t>(f.bytes)}});
 }
 
+void addLook(Json& event, const LookFindings& found) {
+    if (found.lightsByArrival) event.set("lights_by_arrival", true);
+    if (found.walks.empty()) return;
+    Json walks = Json::object({});
+    for (const auto& [medium, share] : found.walks) walks.set(medium, std::round(100 * static_cast<double>(share)) / 100);
+    event.set("walks_to_surface", std::move(walks));
+}
+
 std::string lightPathText(const CausticFindings& all) {
     const auto& f = all.of<LightPathFindings>();
     if (f.verdict == undecided) return {};

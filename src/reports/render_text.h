@@ -52,6 +52,8 @@ std::string glintLine(const GlintFindings&);
 // Empty where paths are not guided.
 std::string guideLine(const GuideFindings&);
 Json guideJson(const GuideFindings&);
+// Sets what there is of it.
+void addLook(Json& event, const LookFindings&);
 // docs/output.md lists the members.
 Json lightPathJson(const CausticFindings&);
 

@@ -98,11 +98,13 @@ struct WalkSums {
 
 } // namespace
 
+bool WalkPilot::serves(const Scene& scene, const Medium& medium) {
+    const PhaseFunction& phase = medium.phase();
+    return !scene.mediumUses[medium.number].lit && !phase.spectral() && phase.value(1) == phase.value(-1);
+}
+
 bool WalkPilot::wanted(const Scene& scene) {
-    return std::ranges::any_of(scene.media, [&](const auto& medium) {
-        const PhaseFunction& phase = medium->phase();
-        return !scene.mediumUses[medium->number].lit && !phase.spectral() && phase.value(1) == phase.value(-1);
-    });
+    return std::ranges::any_of(scene.media, [&](const auto& medium) { return serves(scene, *medium); });
 }
 
 std::unique_ptr<SampleRecorder> WalkPilot::recorder() { return std::make_unique<WalkRecorder>(*this); }

@@ -114,7 +114,8 @@ struct SurfacePull {
 // variance for the work. Thread-safe.
 class WalkPilot {
   public:
-    // Whether the scene has solids in which walks can be drawn so.
+    // Whether walks in the medium can be drawn so: inside of solids, where it scatters evenly.
+    static bool serves(const Scene&, const Medium&);
     static bool wanted(const Scene&);
 
     std::unique_ptr<SampleRecorder> recorder();
