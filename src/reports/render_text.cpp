@@ -355,7 +355,8 @@ void addLook(Json& event, const LookFindings& found) {
     if (found.lightsByArrival) event.set("lights_by_arrival", true);
     if (found.walks.empty()) return;
     Json walks = Json::object({});
-    for (const auto& [medium, share] : found.walks) walks.set(medium, std::round(100 * static_cast<double>(share)) / 100);
+    for (const auto& [medium, share] : found.walks)
+        walks.set(medium, std::round(100 * static_cast<double>(share)) / 100);
     event.set("walks_to_surface", std::move(walks));
 }
 

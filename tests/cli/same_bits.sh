@@ -48,6 +48,29 @@ same_pixels guide1.exr resumed.exr
 expect 0 guided.scene --quiet --size 64x64 --samples 16 --pilot 10 -o fewer.exr
 [[ $(pixels fewer.exr) != $(pixels guide1.exr) ]] || fault "the size of the pilots changes nothing"
 
+# with lamps that a wall hides, and a solid in which walks are drawn towards the surface
+cat >hidden.scene <<'END'
+scene 1
+film { size 64 64 }
+camera { from 0 9 0.1; look-at 0 0 0; fov 40 deg; exposure 10 stops }
+render { samples 8 }
+material stone subsurface { reflectance 0.6; mean-free-path 5 cm; boundary diffuse }
+shape floor quad { points -3 0 3  3 0 3  3 0 -3  -3 0 -3; material diffuse { reflectance 0.6 } }
+shape wall box { min -0.05 0 -3; max 0.05 3 3; material diffuse { reflectance 0.3 } }
+shape ball sphere { center 1.2 0.6 -1; radius 0.6; material stone }
+light left sphere { center -1 1.5 0; radius 0.1; power 20 W }
+light right sphere { center 1 1.5 1; radius 0.1; power 60 W }
+END
+for threads in 1 2 8; do expect 0 hidden.scene --quiet -o hidden$threads.exr -t $threads; done
+same_pixels hidden1.exr hidden2.exr
+same_pixels hidden1.exr hidden8.exr
+for part in 2 1; do expect 0 hidden.scene --quiet -o part.exr --part $part/2; done
+expect 0 merge part.part{1,2}.abbe -o merged.exr
+same_pixels hidden1.exr merged.exr
+expect 0 hidden.scene --json -o hidden_again.exr
+says out '"lights_by_arrival":true'
+says out '"walks_to_surface":{"stone":0.'
+
 # superset
 expect 0 "$scenes/room.scene" --quiet -o least.exr
 expect 0 "$scenes/room.scene" --quiet -o all.exr --kernel all
