@@ -28,7 +28,7 @@ const gallery = [
     {name: "milk-and-juice", shows: "dense media in glass: measured milk and juice", size: [400, 250], samples: 64},
     {name: "parametric-shapes", shows: "glass, gold and paint on box, cylinder, cone and torus", size: [400, 200], samples: 512},
     {name: "subdivision-still-life", shows: "subdivision: four cages and their limit surfaces", size: [400, 225], samples: 256},
-    {name: "jade-dragon", shows: "subsurface scattering: a displaced dragon of jade, lit from behind", size: [320, 360], samples: 128},
+    {name: "jade-dragon", shows: "subsurface scattering: a displaced dragon of jade, lit from behind", size: [320, 360], samples: 384},
     {name: "hair-ball", shows: "hair: 18 000 strands, coloured by melanin", size: [400, 300], samples: 64},
 ];
 
