@@ -37,7 +37,8 @@ class AttenuationCurve final : public Curve {
 // The single-scattering albedo with which a deep medium of mean scattering cosine g, -1 < g < 1, sends back the share
 // `color` of diffuse light. By similarity the medium has s = √((1 - α)/(1 - g α)), and van de Hulst's fit says what it
 // sends back: (1 - s)(1 - 0.139 s)/(1 + 1.17 s) [Hulst1980; Kulla2017]. Of the quadratic equation for s the root is
-// written so that nothing cancels near white.
+// written so that nothing cancels near white. Within 2 % of what walks find, but for dark media that scatter backwards:
+// 5.6 % too bright for 0.1 with g = -0.4 (statistical/rendering/subsurface_test).
 inline double singleScatteringAlbedo(double color, double g) {
     const double b = 1.139 + 1.17 * color, c = 1 - color;
     const double s = 2 * c / (b + std::sqrt(b * b - 0.556 * c)), s2 = s * s;
