@@ -26,7 +26,7 @@ class ArrivalRecorder final : public SampleRecorder {
         asking_.x = x;
         asking_.y = y;
     }
-    void start(const Ray&, const Wavelengths&) noexcept override { throughput_ = 1; }
+    void start(const Ray&, const Wavelengths&) noexcept override {}
     void arrives(const SurfaceHit&, const Spectrum& beta) noexcept override { throughput_ = mean(beta); }
     void asks(const Receiver& at, const Light* light, std::uint32_t part) noexcept override {
         asking_.at = at;
@@ -37,7 +37,7 @@ class ArrivalRecorder final : public SampleRecorder {
     void samples(const void*, const LightSample& light, const BsdfEval& eval, float pdf) noexcept override {
         if (!asked_.empty() && pdf > 0) asked_.back().shown = throughput_ * mean(light.radiance * eval.fcos) / pdf;
     }
-    void collides(Vec3, const Spectrum& beta) noexcept override { throughput_ = mean(beta); }
+    void collides(Vec3, const Spectrum&) noexcept override {}
     void scatters(const SurfaceHit&, Lobes, const Spectrum&, const BsdfSample*) noexcept override {}
     void gathers(const Spectrum&, const void*, bool) noexcept override {}
     void keep(const Spectrum&, const Sensor&, double) noexcept override {}
@@ -91,25 +91,23 @@ void LightPilot::add(const std::vector<Asked>& asked) {
     asked_.insert(asked_.end(), asked.begin(), asked.end());
 }
 
-std::optional<LightArrival> LightPilot::learn(const LightSampler& lights,
-                                              const std::function<float(int, int)>& over) const {
-    std::vector<Asked> asked = asked_;
+std::optional<LightArrival> LightPilot::learn(const LightSampler& lights, const std::function<float(int, int)>& over) {
     // So that nothing depends on which thread was first; the samples of a pixel came in order.
-    std::ranges::stable_sort(asked, {}, [](const Asked& a) { return std::pair(a.y, a.x); });
+    std::ranges::stable_sort(asked_, {}, [](const Asked& a) { return std::pair(a.y, a.x); });
     std::vector<SpaceTree::Place> places;
-    for (std::uint32_t i = 0; i < asked.size(); ++i)
-        if (asked[i].at.surface) places.push_back({asked[i].at.p, faceOf(asked[i].at.n), i});
+    for (std::uint32_t i = 0; i < asked_.size(); ++i)
+        if (asked_[i].at.surface) places.push_back({asked_[i].at.p, faceOf(asked_[i].at.n), i});
     if (places.size() < kAsked) return std::nullopt;
     const SpaceTree cells(places, kAsked);
     std::vector<LightArrival::Factors> factors;
     for (std::size_t leaf = 0; leaf < cells.leaves(); ++leaf)
-        factors.push_back(factorsOf(cells.members(places, leaf), asked, lights));
+        factors.push_back(factorsOf(cells.members(places, leaf), asked_, lights));
     LightArrival learnt(cells, std::move(factors));
     double shown = 0, left = 0;
     for (std::size_t leaf = 0; leaf < cells.leaves(); ++leaf) {
         SecondMoments m;
         for (const SpaceTree::Place& place : cells.members(places, leaf)) {
-            const Asked& a = asked[place.number];
+            const Asked& a = asked_[place.number];
             m.add(static_cast<double>(a.shown) * static_cast<double>(over(a.x, a.y)),
                   lights.probability(a.light, a.part, a.at), lights.probability(a.light, a.part, a.at, {}, &learnt));
         }

@@ -30,18 +30,17 @@ class LightArrival {
     LightArrival(SpaceTree cells, std::vector<Factors> factors)
         : cells_(std::move(cells)), factors_(std::move(factors)) {}
 
-    // Null in media, of which nothing is known.
-    const Factors* at(const Receiver& at) const {
-        return at.surface ? &factors_[cells_.leaf(at.p, faceOf(at.n))] : nullptr;
+    // kGroups of them; null in media, of which nothing is known.
+    const float* at(const Receiver& at) const {
+        return at.surface ? factors_[cells_.leaf(at.p, faceOf(at.n))].data() : nullptr;
     }
-    std::size_t bytes() const { return cells_.bytes() + factors_.size() * sizeof(Factors); }
 
   private:
     SpaceTree cells_;
     std::vector<Factors> factors_;
 };
 
-// Listens to a look at a frame. Thread-safe.
+// Listens to a look at a frame in which lights are asked for at surfaces alone. Thread-safe.
 class LightPilot {
   public:
     // A place at which next-event estimation asked for a light.
@@ -57,7 +56,7 @@ class LightPilot {
     void add(const std::vector<Asked>&);
     // Nothing where the noise of next-event estimation would not be much less with it. `over`: what a pixel's light is
     // to be multiplied by, so that all count alike.
-    std::optional<LightArrival> learn(const LightSampler&, const std::function<float(int, int)>& over) const;
+    std::optional<LightArrival> learn(const LightSampler&, const std::function<float(int, int)>& over);
 
   private:
     std::mutex mutex_;

@@ -120,31 +120,30 @@ std::optional<std::size_t> LightSampler::groupOf(const Light* light, std::uint32
 }
 
 // Of the picks, to lights in the tree.
-float LightSampler::nearShare(const Receiver& at, const Factors* arrives) const noexcept {
+float LightSampler::nearShare(const Receiver& at, const float* arrives) const noexcept {
     if (near_ == lights_.size()) return 1;
     if (near_ == 0) return 0;
-    const float near = tree_->irradiance(at, arrives ? arrives->data() : nullptr);
+    const float near = tree_->irradiance(at, arrives);
     const float all = near + farIrradiance(at, arrives);
     return all > 0 ? std::clamp(near / all, kLeastShare, 1 - kLeastShare) : 0.5f;
 }
 
 // In a room a sky gives what comes in by the windows.
-float LightSampler::farIrradiance(const Receiver& at, const Factors* arrives) const noexcept {
+float LightSampler::farIrradiance(const Receiver& at, const float* arrives) const noexcept {
     if (!farInSight_) return farIrradiance_;
     float sum = 0;
-    for (std::size_t i = 0; i < farAmount_.size(); ++i)
-        sum += farAmount_[i] * inSight(i, at) * (arrives ? (*arrives)[LightArrival::kBranches + i] : 1);
+    for (std::size_t i = 0; i < farAmount_.size(); ++i) sum += farAmount_[i] * inSight(i, at, arrives);
     return sum;
 }
 
-float LightSampler::inSight(std::size_t i, const Receiver& at) const noexcept {
+float LightSampler::inSight(std::size_t i, const Receiver& at, const float* arrives) const noexcept {
     const DistantLight* const distant = lights_[near_ + i].light->asDistant();
-    return distant ? distant->inSight(at) : 1;
+    return (distant ? distant->inSight(at) : 1) * (arrives ? arrives[LightArrival::kBranches + i] : 1);
 }
 
 // A surface that turns its back on the sun need not ask for it, and in a room the sun lies behind walls unless a window
 // shows it.
-LightSampler::FarShares LightSampler::farShares(const Receiver& at, const Factors* arrives) const noexcept {
+LightSampler::FarShares LightSampler::farShares(const Receiver& at, const float* arrives) const noexcept {
     // So much of the sky in sight is as good as all of it for the half that is shared evenly: what is seen of it may be
     // the brightest part.
     constexpr float kEnough = 0.1f;
@@ -152,7 +151,7 @@ LightSampler::FarShares LightSampler::farShares(const Receiver& at, const Factor
     float seen = 0, total = 0;
     const std::size_t count = farAmount_.size();
     for (std::size_t i = 0; i < count; ++i) {
-        shares[i] = inSight(i, at) * (arrives ? (*arrives)[LightArrival::kBranches + i] : 1);
+        shares[i] = inSight(i, at, arrives);
         even[i] = std::min(shares[i], kEnough);
         seen += even[i];
         total += shares[i] * farAmount_[i];
@@ -164,7 +163,7 @@ LightSampler::FarShares LightSampler::farShares(const Receiver& at, const Factor
     return shares;
 }
 
-PickedLight LightSampler::pickFar(double u, float share, const Receiver& at, const Factors* arrives) const noexcept {
+PickedLight LightSampler::pickFar(double u, float share, const Receiver& at, const float* arrives) const noexcept {
     if (farInSight_ && farAmount_.size() > 1) {
         const FarShares shares = farShares(at, arrives);
         std::uint32_t last = 0;
@@ -183,21 +182,21 @@ PickedLight LightSampler::pickFar(double u, float share, const Receiver& at, con
 PickedLight LightSampler::pick(float u, const Receiver& at, const ScatterView& view,
                                const LightArrival* arrival) const noexcept {
     if (lights_.size() == 1) return picked(0, 1);
-    const Factors* const arrives = arrival ? arrival->at(at) : nullptr;
+    const float* const arrives = arrival ? arrival->at(at) : nullptr;
     const float share = nearShare(at, arrives);
     const auto border = static_cast<double>(share);
     const double x = refined(u, at.p);
     if (!(x < border)) return pickFar((x - border) / (1 - border), 1 - share, at, arrives);
-    const LightTree::Pick p = tree_->pick(x / border, at, view, arrives ? arrives->data() : nullptr);
+    const LightTree::Pick p = tree_->pick(x / border, at, view, arrives);
     return picked(p.light, share * p.probability);
 }
 
 float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at, const ScatterView& view,
-                                  const Factors* arrives) const noexcept {
+                                  const float* arrives) const noexcept {
     if (i == kNone) return 0;
     if (lights_.size() == 1) return 1;
     const float share = nearShare(at, arrives);
-    if (i < near_) return share * tree_->probability(i, at, view, arrives ? arrives->data() : nullptr);
+    if (i < near_) return share * tree_->probability(i, at, view, arrives);
     const bool choosing = farInSight_ && farAmount_.size() > 1;
     return (1 - share) * (choosing ? farShares(at, arrives)[i - near_] : farProbability_[i - near_]);
 }

@@ -79,18 +79,18 @@ class LightSampler {
     void weighFar(const std::vector<double>& amounts);
     void number(const std::vector<std::unique_ptr<const Light>>&);
     std::uint32_t find(const Light*, std::uint32_t part) const noexcept;
-    using Factors = LightArrival::Factors;
-    float nearShare(const Receiver&, const Factors*) const noexcept;
-    float farIrradiance(const Receiver&, const Factors*) const noexcept;
-    float inSight(std::size_t far, const Receiver&) const noexcept; // how much of a light far away, 0 … 1
+    float nearShare(const Receiver&, const float* arrives) const noexcept;
+    float farIrradiance(const Receiver&, const float* arrives) const noexcept;
+    // How much of a light far away, 0 … 1; `arrives`: as LightArrival::at().
+    float inSight(std::size_t far, const Receiver&, const float* arrives) const noexcept;
     static constexpr std::size_t kMostWeighed = 8; // of far lights: those that a receiver is asked about
     using FarShares = std::array<float, kMostWeighed>;
-    FarShares farShares(const Receiver&, const Factors*) const noexcept; // Requires farInSight_
-    PickedLight pickFar(double u, float share, const Receiver&, const Factors*) const noexcept;
+    FarShares farShares(const Receiver&, const float* arrives) const noexcept; // Requires farInSight_
+    PickedLight pickFar(double u, float share, const Receiver&, const float* arrives) const noexcept;
     PickedLight picked(std::uint32_t i, float probability) const {
         return {lights_[i].light, lights_[i].part, probability};
     }
-    float probabilityOf(std::uint32_t i, const Receiver&, const ScatterView&, const Factors*) const noexcept;
+    float probabilityOf(std::uint32_t i, const Receiver&, const ScatterView&, const float* arrives) const noexcept;
 
     std::vector<Source> lights_; // those in the tree, in its order, then those far away
     std::uint32_t near_ = 0;     // how many are in the tree

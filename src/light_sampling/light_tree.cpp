@@ -101,9 +101,14 @@ Spectrum LightTree::importance(const Node& node, const Along& along) noexcept {
     return select(node.power > Eight(0.f).v, clamped(value, kLeastImportance, kMostImportance), Eight(0.f));
 }
 
+template <typename Place>
+Spectrum LightTree::importance(const Node& node, const Place& at, const float* factors) noexcept {
+    const Eight parts = importance(node, at);
+    return factors ? parts * eightOf(factors) : parts;
+}
+
 template <typename Place> Spectrum LightTree::shares(const Node& node, const Place& at, const float* factors) noexcept {
-    Eight parts = importance(node, at);
-    if (factors) parts *= eightOf(factors);
+    Eight parts = importance(node, at, factors);
     const float most = maxLane(parts);
     // A light that the receiver all but touches must not round away another one, which may be the one that is seen.
     // Where none can give anything it does not matter.
@@ -173,9 +178,7 @@ float LightTree::probability(std::uint32_t light, const Ray& ray, RayExtent exte
 
 // Between a light that emits all around, 1/4π, and one that faces the receiver, 1/π.
 float LightTree::irradiance(const Receiver& at, const float* factors) const noexcept {
-    Eight parts = importance(nodes_[0], at);
-    if (factors) parts *= eightOf(factors);
-    return std::min(sum(parts), kMostImportance) * (0.5f * kInvPi);
+    return std::min(sum(importance(nodes_[0], at, factors)), kMostImportance) * (0.5f * kInvPi);
 }
 
 std::size_t LightTree::branches() const {

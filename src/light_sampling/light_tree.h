@@ -79,6 +79,8 @@ class LightTree {
     };
     template <typename Scatters> static Spectrum weigh(const Node&, const Receiver&, Scatters&&) noexcept;
     static Spectrum importance(const Node&, const Along&) noexcept;
+    // `factors` as pick() takes them, of the root.
+    template <typename Place> static Spectrum importance(const Node&, const Place&, const float* factors) noexcept;
     // The probability of each branch.
     template <typename Place> static Spectrum shares(const Node&, const Place&, const float* factors) noexcept;
     template <typename Place> Pick pickAt(double u, const Place&, const float* factors = nullptr) const noexcept;

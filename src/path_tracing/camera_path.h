@@ -317,10 +317,9 @@ float CameraPath<E>::turn(Ray& ray, const PhaseFunction& phase, const VertexSamp
     return cosine;
 }
 
-// Walks from where no light is sampled end where they leave the solid. Where scattering prefers directions of its own,
-// those of a half space are too different.
+// Walks from where no light is sampled end where they leave the solid.
 template <EffectBits E> bool CameraPath<E>::leavesBySurface(const PhaseFunction& phase) const {
-    return !last_.lit && !walk_.context.how.evenly && !phase.spectral() && phase.value(1) == phase.value(-1) &&
+    return !last_.lit && !walk_.context.how.evenly && SurfacePull::suits(phase) &&
            walk_.media.tracker.even(walk_.path.nested.here.media());
 }
 

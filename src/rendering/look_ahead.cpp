@@ -184,6 +184,7 @@ struct Listeners {
     LightPilot lights;
 };
 
+// Passes on what the two listen to, and nothing else.
 class TeeRecorder final : public SampleRecorder {
   public:
     void add(std::unique_ptr<SampleRecorder> to) { to_.push_back(std::move(to)); }
@@ -225,8 +226,7 @@ class HeardFilm final : public FilmDecorator {
   public:
     HeardFilm(const PathContext& context, Film& film, Listeners& to)
         : FilmDecorator(film), film_(film), to_(to), walks_(WalkPilot::wanted(context.scene)),
-          lights_(context.settings.technique.lightChoice == Technique::LightChoice::tree && context.how.nextEvent &&
-                  context.lights.hasGroups()) {}
+          lights_(asksAtSurfaces(context)) {}
 
     bool listens() const { return walks_ || lights_; }
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
@@ -240,6 +240,13 @@ class HeardFilm final : public FilmDecorator {
     }
 
   private:
+    // For one of several lights, and nowhere in media: of those nothing is learnt, and most of the light may be theirs.
+    static bool asksAtSurfaces(const PathContext& context) {
+        const auto isLit = [](const MediumUse& m) { return m.lit && m.place != MediumUse::Place::nowhere; };
+        return context.settings.technique.lightChoice == Technique::LightChoice::tree && context.how.nextEvent &&
+               context.lights.hasGroups() && std::ranges::none_of(context.scene.mediumUses, isLit);
+    }
+
     Film& film_;
     Listeners& to_;
     bool walks_, lights_;
@@ -259,8 +266,8 @@ class FramePilot {
         Listeners heard;
         PilotFilm pilot = look(heard);
         describe(pilot, watch.seconds());
-        if (roulette == Technique::Roulette::pilot) result_.roulette = RouletteReference(pilot);
         const RouletteReference shown(pilot);
+        if (roulette == Technique::Roulette::pilot) result_.roulette = shown;
         result_.pulled = heard.walks.shares(context_.scene, shown);
         result_.arrival = heard.lights.learn(context_.lights, [&](int x, int y) { return shown.scale(x, y); });
         if (context_.settings.adaptive && !stop_()) result_.plan = plan();

@@ -99,8 +99,7 @@ struct WalkSums {
 } // namespace
 
 bool WalkPilot::serves(const Scene& scene, const Medium& medium) {
-    const PhaseFunction& phase = medium.phase();
-    return !scene.mediumUses[medium.number].lit && !phase.spectral() && phase.value(1) == phase.value(-1);
+    return !scene.mediumUses[medium.number].lit && SurfacePull::suits(medium.phase());
 }
 
 bool WalkPilot::wanted(const Scene& scene) {
@@ -115,13 +114,12 @@ void WalkPilot::add(const std::vector<Path>& paths, std::uint64_t workOfOthers) 
     paths_.insert(paths_.end(), paths.begin(), paths.end());
 }
 
-PulledShares WalkPilot::shares(const Scene& scene, const RouletteReference& roulette) const {
+PulledShares WalkPilot::shares(const Scene& scene, const RouletteReference& roulette) {
     constexpr double kFewest = 64; // paths that say anything
-    std::vector<Path> paths = paths_;
     // So that sums do not depend on which thread was first; the samples of a pixel came in order.
-    std::ranges::stable_sort(paths, {}, [](const Path& p) { return std::pair(p.y, p.x); });
+    std::ranges::stable_sort(paths_, {}, [](const Path& p) { return std::pair(p.y, p.x); });
     std::vector<WalkSums> sums(scene.media.size());
-    for (const Path& path : paths) {
+    for (const Path& path : paths_) {
         WalkSums& to = sums[path.medium->number];
         const auto over = static_cast<double>(roulette.scale(path.x, path.y)); // what the pixel shows, up to a factor
         to.paths += 1;

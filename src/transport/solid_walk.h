@@ -47,9 +47,11 @@ class PulledShares {
 struct SurfacePull {
     Vec3 n;                         // of that surface, outside
     const Medium* medium = nullptr; // of the walk; null: it has not collided yet
-    // Of the direction just taken.
-    bool drawn = false;   // to the surface
-    bool pending = false; // whether the step is to be weighed
+    bool pending = false;           // a direction was taken, and the step is to be weighed
+
+    // Of media that scatter evenly. Where scattering prefers directions of its own, those of a half space are too
+    // different.
+    static bool suits(const PhaseFunction& phase) { return !phase.spectral() && phase.value(1) == phase.value(-1); }
 
     // The first collision; `share` of such walks are drawn to the surface, as this one if `pulled`.
     void begin(const Medium& inside, const Wavelengths& lambda, float share, bool pulled) {
@@ -80,18 +82,17 @@ struct SurfacePull {
     void take(float w, float phase) {
         cosine_ = w;
         phase_ = phase;
-        drawn = pulled_;
         pending = true;
     }
     // By how much longer than those of the medium distances are.
-    float stretch() const { return drawn ? 1 / (1 - kappa_[0] * cosine_) : 1; }
+    float stretch() const { return pending && pulled_ ? 1 / (1 - kappa_[0] * cosine_) : 1; }
     // After the way `t`: density of the mixture over that of phase function and medium.
     Spectrum mixture(float t, bool collided) {
         const Spectrum grown = exp(min(extinction_ * kappa_ * (cosine_ * t), Spectrum(80.f)));
         Spectrum pull = even_ * grown * (1 / phase_);
         // The density of a direction falls with it as that of a collision grows.
         if (!collided) pull = pull / (Spectrum(1.f) - kappa_ * cosine_);
-        pending = drawn = false;
+        pending = false;
         const Spectrum all = fma(toSurface_, pull, asScattered_);
         toSurface_ = toSurface_ * pull / all;
         asScattered_ = asScattered_ / all;
@@ -119,7 +120,7 @@ class WalkPilot {
     static bool wanted(const Scene&);
 
     std::unique_ptr<SampleRecorder> recorder();
-    PulledShares shares(const Scene&, const RouletteReference&) const;
+    PulledShares shares(const Scene&, const RouletteReference&);
 
     static constexpr std::array<float, 5> kShares{0, 0.25f, 0.5f, 0.75f, 0.9f};
     // A path through a solid, for each of kShares: what it shows, squared, and its work, as it would count.

@@ -12,6 +12,18 @@
 #include <numeric>
 
 namespace abbe::test {
+namespace {
+
+LookAhead aheadOf(const TestScene& scene) {
+    const LightSampler lights(scene.scene().lights);
+    const PathContext context{scene.scene(), lights, scene.settings()};
+    const RecordingFilm film(scene.built().film, 2);
+    const RenderState state(film.bounds(), 0, 0);
+    const TileFunction render = kernelFor(scene.scene().effects).render;
+    return lookAhead(context, render, film, state, [] { return false; });
+}
+
+} // namespace
 
 TEST_CASE("blocks of light paths are predicted to cost as much as a tile does") {
     const auto scene = TestScene::parse(R"(scene 1
@@ -48,13 +60,7 @@ TEST_CASE("as many walks in solids are drawn towards the surface as find light t
                                             "boundary diffuse }\n" +
                                             rest);
         REQUIRE(scene.report() == "");
-        const LightSampler lights(scene.scene().lights);
-        const PathContext context{scene.scene(), lights, scene.settings()};
-        const RecordingFilm film(scene.built().film, 2);
-        const RenderState state(film.bounds(), 0, 0);
-        const TileFunction render = kernelFor(scene.scene().effects).render;
-        const LookAhead ahead = lookAhead(context, render, film, state, [] { return false; });
-        return ahead.pulled.of(*scene.scene().media.front());
+        return aheadOf(scene).pulled.of(*scene.scene().media.front());
     };
     CHECK(shareOf("shape sphere { radius 1; material stone }\nlight sky") == 0.9f);
     CHECK(shareOf("shape box { min -2 -2 -0.1; max 2 2 0; material stone }\n"
@@ -72,11 +78,8 @@ TEST_CASE("of lights behind a wall it is found that they do not arrive, and of o
             "light sphere { center 1 1.5 0; radius 0.1; power 20 W }\n" +
             rest);
         REQUIRE(scene.report() == "");
+        const LookAhead ahead = aheadOf(scene);
         const LightSampler lights(scene.scene().lights);
-        const PathContext context{scene.scene(), lights, scene.settings()};
-        const RecordingFilm film(scene.built().film, 2);
-        const RenderState state(film.bounds(), 0, 0);
-        const LookAhead ahead = lookAhead(context, kernelFor({}).render, film, state, [] { return false; });
         const Vec3 left = Vec3(Vec3d(-1, 0, 0) - scene.scene().origin);
         const Receiver at(left, {0, 1, 0}, false);
         const LightArrival* const arrival = ahead.arrival ? &*ahead.arrival : nullptr;
